@@ -314,6 +314,29 @@ fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Erro
     Ok(())
 }
 
+/// In the middle of the box the first ball of the hand is nearest to the post, and by the thousandth part of a millimetre
+/// never meets it, wherever the first joint is. The second one does, elsewhere. While the nearest boxes came first, 36,827
+/// parts were looked at before that was found. And a pose in which bodies touch to rounding, a box without a width, was
+/// halved until the limit of parts was reached.
+#[test]
+fn where_links_almost_meet_does_not_hide_where_they_do() -> Result<(), Box<dyn std::error::Error>> {
+    let ball = |radius: f64, at: DVec2| Posed::translated(Ball::new(radius)?, at);
+    let (aside, post) = (DVec2::from_angle(0.9) * -0.3, Link { joint: None, bodies: vec![ball(0.5, DVec2::ZERO)?] });
+    for short in [1e-3, 1e-6] {
+        let hand = vec![ball(0.2 - short, DVec2::X * -0.3)?, ball(0.201, aside)?];
+        let joints = [turning(None, DVec2::ZERO), turning(Some(0), DVec2::X)];
+        let robot = Linkage::new(joints, [post.clone(), Link { joint: Some(1), bodies: hand }])?;
+        let answer = robot.joint_box([1, 0], &[[-1.0, 1.0]; 2], LinkageOptions::new())?;
+        assert!(matches!(answer.outcome, JointBoxOutcome::Meets { bodies: [1, 0], .. }), "{answer:?}");
+        assert!(answer.boxes < 100, "{answer:?}");
+    }
+    let hand = Link { joint: Some(0), bodies: vec![ball(0.5, DVec2::X)?] };
+    let touching = Linkage::new([turning(None, DVec2::ZERO)], [post, hand])?;
+    let answer = touching.joint_box([1, 0], &[[0.25; 2]], LinkageOptions::new())?;
+    assert_eq!((answer.outcome, answer.boxes), (JointBoxOutcome::Undecided { share: 1.0 }, 1), "nothing can be halved");
+    Ok(())
+}
+
 fn ask_own(robot: &Linkage<Bar>, values: &[f64]) -> Path<DVec2> {
     ask(robot, &[values.to_vec()], &Scene::default())
 }

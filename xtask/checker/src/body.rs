@@ -6,11 +6,13 @@
 use crate::interval::{Interval, Vector};
 
 /// A set of points swept by a ball: `core ⊕ B(radius)`.
+#[derive(Clone)]
 pub(crate) struct Body {
     pub(crate) core: Set,
     pub(crate) radius: Interval,
 }
 
+#[derive(Clone)]
 #[allow(clippy::large_enum_variant, reason = "a body is of a few of them")]
 pub(crate) enum Set {
     Points(Vec<Vector>),

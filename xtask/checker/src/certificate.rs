@@ -96,6 +96,13 @@ pub fn judge(line: &Value, reader: &Reader<'_>) -> Result<(Verdict, Bounds), Unr
     Ok((proved.judge(&claim), proved))
 }
 
+/// What the certificate of a distance proves of that between two bodies.
+pub(crate) fn distance(a: Body, b: Body, certificate: &Value, reader: &Reader<'_>) -> Result<Bounds, Unread> {
+    let (zero, end) = (Vector::zero, Interval::infinity());
+    let question = Question { set: difference(a, b), source: zero(), direction: zero(), end, is_pair: true };
+    Ok(question.distance(&Certificate::read(certificate, &question.set, reader)?))
+}
+
 /// The bracket of an answer; without one, the number itself, give or take what the query allows.
 fn claim(answer: &Value, name: &str, line: &Value, reader: &Reader<'_>) -> Result<Bounds, Unread> {
     let bound = |name| answer.get(name).map(|value| reader.number(value).map(Interval::from)).transpose();

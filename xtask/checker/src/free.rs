@@ -1,4 +1,5 @@
-//! Whether a robot's path, or a box of its joint values, is free, by planes that stand between bodies.
+//! Whether a robot's path, or a box of its joint values, is free, by planes that stand between bodies; and whether what
+//! is met is met, by the certificate of a distance at a pose.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -7,7 +8,7 @@ use std::rc::Rc;
 use serde_json::Value;
 
 use crate::body::{Body, Set};
-use crate::certificate::Verdict;
+use crate::certificate::{Verdict, distance};
 use crate::interval::{Interval, Vector};
 use crate::reader::{Reader, Unread, field};
 use crate::robot::{Lever, Placed, Robot, Route};
@@ -17,10 +18,13 @@ const HALVINGS: u32 = 14;
 
 /// What became of the parts of a certificate, and of the claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FreeProof {
-    /// Whether what is claimed to be free is covered by parts that are proved. An answer that claims something to be
-    /// met is not proved by them.
+pub struct RobotProof {
+    /// Whether it is claimed that all is free, and nothing met.
+    pub is_of_free: bool,
+    /// Whether what is claimed to be free is covered by parts that are proved, and what is claimed to meet does.
     pub verdict: Verdict,
+    /// Why not, where the claim is not proved.
+    pub because: Option<&'static str>,
     /// The parts that are proved.
     pub proved: u64,
     /// Those that are not.
@@ -46,6 +50,7 @@ enum Other<'r> {
 }
 
 /// A thing that stands in the way.
+#[derive(Clone)]
 #[allow(clippy::large_enum_variant, reason = "there are a few of them")]
 enum Obstacle {
     Body(Body),
@@ -59,7 +64,7 @@ type Key = (usize, usize, usize, usize, Option<usize>);
 ///
 /// # Errors
 /// Where the line is no such query with an answer and a certificate.
-pub fn judge_free(line: &Value, reader: &Reader<'_>) -> Result<FreeProof, Unread> {
+pub fn judge_robot(line: &Value, reader: &Reader<'_>) -> Result<RobotProof, Unread> {
     let robot = Robot::read(line, reader)?;
     let target = line.get("target_distance").map_or(Ok(0.0), |value| reader.number(value))?;
     let target = Interval::from(target.max(0.0));
@@ -71,14 +76,31 @@ pub fn judge_free(line: &Value, reader: &Reader<'_>) -> Result<FreeProof, Unread
     }
 }
 
-impl FreeProof {
+impl RobotProof {
+    fn new(is_of_free: bool) -> Self {
+        Self { is_of_free, verdict: Verdict::NotProved, because: None, proved: 0, not_proved: 0 }
+    }
+
     fn count(&mut self, is_proved: bool) -> bool {
         *if is_proved { &mut self.proved } else { &mut self.not_proved } += 1;
         is_proved
     }
 
-    const NONE: Self = Self { verdict: Verdict::NotProved, proved: 0, not_proved: 0 };
+    /// The verdict on what has to be so, each with what is said where it is not.
+    fn of(self, claims: impl IntoIterator<Item = (bool, &'static str)>) -> Self {
+        let because = claims.into_iter().find_map(|(is_so, because)| (!is_so).then_some(because));
+        Self { verdict: if because.is_none() { Verdict::Proved } else { Verdict::NotProved }, because, ..self }
+    }
 }
+
+/// What is said where parts do not cover what is free.
+const NOT_COVERED: &str = "what is free is not covered by parts that are proved";
+
+/// What is said of a contact that is none to rounding.
+const NOT_CERTAIN: &str = "they may only touch, within rounding, as the answer says itself";
+
+/// What is said where the points of a certificate do not prove a contact.
+const NOT_MET: &str = "the bodies are not proved to meet at the pose";
 
 fn judge_path(
     line: &Value,
@@ -86,7 +108,7 @@ fn judge_path(
     robot: &Robot,
     target: &Interval,
     parts: &[Value],
-) -> Result<FreeProof, Unread> {
+) -> Result<RobotProof, Unread> {
     let list = |name: &str| field(line, name)?.as_array().ok_or_else(|| format!("the field \"{name}\" is no list"));
     let waypoints = list("waypoints")?.iter().map(|row| numbers(row, reader)).collect::<Result<Vec<_>, _>>()?;
     if waypoints.is_empty() || waypoints.iter().any(|row| row.len() != robot.values) {
@@ -118,10 +140,18 @@ fn judge_path(
         }
         sorted.entry(key).or_default().push((times, normals));
     }
+    let answer = field(line, "answer")?;
+    let is_free = field(answer, "free")?.as_bool().ok_or("free is neither true nor false")?;
+    let mut proof = RobotProof::new(is_free);
     let last = if waypoints.len() == 1 { 0.0 } else { 1.0 };
     let edges = (waypoints.len() - 1).max(1);
-    let mut proof = FreeProof::NONE;
-    let mut free = Vec::new();
+    // The ends of an edge.
+    let ends = |edge: usize| {
+        let to = waypoints.get((edge + 1).min(waypoints.len() - 1));
+        let ends = waypoints.get(edge).filter(|_| edge < edges).zip(to).ok_or("there is no such edge")?;
+        Ok::<[&[f64]; 2], Unread>([ends.0, ends.1])
+    };
+    let mut free = BTreeMap::new();
     let places = Places::default();
     for (key, mut parts) in sorted {
         let (edge, link, body, other, of_link) = key;
@@ -135,10 +165,8 @@ fn judge_path(
             }),
         };
         let other = stands.ok_or("there is nothing of this index to be free of")?;
-        let ends = waypoints.get(edge).zip(waypoints.get(edge + usize::from(edges > 0 && last > 0.0)));
-        let (from_values, to_values) = ends.ok_or("there is no such edge")?;
         let pair = Pair::new(robot, robot.route(link, from), body, other, target);
-        let moving = MovingPair::new(&pair, (edge, link, from), from_values, to_values, &places);
+        let moving = MovingPair::new(&pair, (edge, link, from), ends(edge)?, &places);
         parts.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
         // Up to when the two are proved to be apart; nothing is known before the first part.
         let mut until: Option<f64> = None;
@@ -148,30 +176,71 @@ fn judge_path(
                 until = Some(until.unwrap_or(0.0).max(times[1]));
             }
         }
-        if until.is_some_and(|until| until >= last) {
-            free.push(key);
-        }
+        free.extend(until.map(|until| (key, until)));
     }
-    if field(field(line, "answer")?, "free")?.as_bool() != Some(true) {
-        return Ok(proof);
-    }
+    // The edge that is not free, and up to when it is.
+    let time = |name| field(answer, name).and_then(|time| reader.number(time));
+    let (stop, lower) = if is_free { (edges, 0.0) } else { (count(answer, "edge")?, time("lower")?) };
     let pairs = line.get("self").and_then(Value::as_array);
     let pairs = pairs.into_iter().flatten().map(|pair| Ok([count(pair, 0)?, count(pair, 1)?]));
     let pairs = pairs.collect::<Result<Vec<[usize; 2]>, Unread>>()?;
     let bodies = |link: usize| robot.links.get(link).map_or(0, |link| link.bodies.len());
-    let is_free = |key: Key| free.binary_search(&key).is_ok();
-    let is_covered = |edge: usize| {
+    let is_free_until = |key: Key, until: f64| free.get(&key).is_some_and(|free| *free >= until);
+    let is_covered = |(edge, until): (usize, f64)| {
         let among = (0..robot.links.len()).all(|link| {
-            (0..bodies(link)).all(|body| (0..obstacles.len()).all(|k| is_free((edge, link, body, k, None))))
+            (0..bodies(link))
+                .all(|body| (0..obstacles.len()).all(|k| is_free_until((edge, link, body, k, None), until)))
         });
-        let apart =
-            |&[a, b]: &[usize; 2]| (0..bodies(a)).all(|i| (0..bodies(b)).all(|k| is_free((edge, a, i, b, Some(k)))));
+        let apart = |&[a, b]: &[usize; 2]| {
+            (0..bodies(a)).all(|i| (0..bodies(b)).all(|k| is_free_until((edge, a, i, b, Some(k)), until)))
+        };
         among && pairs.iter().all(apart)
     };
-    if (0..edges).all(is_covered) {
-        proof.verdict = Verdict::Proved;
+    let until = (0..edges.min(stop)).map(|edge| (edge, last)).chain((lower > 0.0).then_some((stop, lower)));
+    let covered = ({ until }.all(is_covered), NOT_COVERED);
+    if is_free {
+        return Ok(proof.of([covered]));
     }
-    Ok(proof)
+    let certain = (field(answer, "certain")?.as_bool() == Some(true), NOT_CERTAIN);
+    if !certain.0 {
+        return Ok(proof.of([covered, certain]));
+    }
+    // The pose at the end of the bracket, in the next edge where that has shown the contact.
+    let (at, upper) = (time("time")?, time("upper")?);
+    if !(lower <= at && at <= upper) {
+        return Err("the time is not within its bracket".to_owned());
+    }
+    let (edge, time) = if upper > 1.0 { (stop + 1, upper - 1.0) } else { (stop, upper) };
+    let values = values_at(ends(edge)?, time);
+    let met = match answer.get("obstacle") {
+        Some(_) => obstacles.get(count(answer, "obstacle")?).cloned().ok_or("there is no such obstacle")?,
+        None => Obstacle::Body(robot.placed(count(answer, "other_link")?, count(answer, "other_body")?, &values)?),
+    };
+    let body = robot.placed(count(answer, "link")?, count(answer, "body")?, &values)?;
+    Ok(proof.of([covered, (met.is_met(body, target, line, reader)?, NOT_MET)]))
+}
+
+/// The joint values at a time of an edge, by those at its ends.
+fn values_at([from, to]: [&[f64]; 2], time: f64) -> Vec<Interval> {
+    let value = |(from, to): (&f64, &f64)| {
+        let [from, to, time] = [*from, *to, time].map(Interval::from);
+        &from + &(&(&to - &from) * &time)
+    };
+    from.iter().zip(to).map(value).collect()
+}
+
+impl Obstacle {
+    /// Whether it is certainly as near to a body as the target, as the certificate of a line shows.
+    fn is_met(self, body: Body, target: &Interval, line: &Value, reader: &Reader<'_>) -> Result<bool, Unread> {
+        Ok(match self {
+            Self::Body(other) => distance(body, other, field(line, "certificate")?, reader)?.upper.is_at_most(target),
+            Self::HalfSpace(normal, offset) => {
+                let depth = body.core.support(&normal.times(&Interval::from(-1.0))).1;
+                let reach = &(&body.radius + target) * &normal.length();
+                (-&(&depth + &reach)).is_at_most(&offset)
+            }
+        })
+    }
 }
 
 impl<'r> Pair<'r> {
@@ -217,8 +286,7 @@ impl<'r> Pair<'r> {
 /// Two bodies along an edge.
 struct MovingPair<'p, 'r> {
     pair: &'p Pair<'r>,
-    from: Vec<Interval>,
-    way: Vec<Interval>,
+    ends: [&'p [f64]; 2],
     speed: Interval,
     acceleration: Interval,
     /// What both ends of the edge and the route are of: the edge and the links.
@@ -230,29 +298,17 @@ struct MovingPair<'p, 'r> {
 type Places = RefCell<HashMap<((usize, usize, Option<usize>), u64), Rc<Placed>>>;
 
 impl<'p, 'r> MovingPair<'p, 'r> {
-    fn new(
-        pair: &'p Pair<'r>,
-        of: (usize, usize, Option<usize>),
-        from: &[f64],
-        to: &[f64],
-        places: &'p Places,
-    ) -> Self {
-        let exact = |values: &[f64]| values.iter().copied().map(Interval::from).collect::<Vec<_>>();
-        let (from, to) = (exact(from), exact(to));
-        let way: Vec<_> = from.iter().zip(&to).map(|(from, to)| to - from).collect();
-        let rates: Vec<_> = way.iter().map(Interval::absolute).collect();
+    fn new(pair: &'p Pair<'r>, of: (usize, usize, Option<usize>), ends: [&'p [f64]; 2], places: &'p Places) -> Self {
+        let [from, to] = [0.0, 1.0].map(|time| values_at(ends, time));
+        let rates: Vec<_> = from.iter().zip(&to).map(|(from, to)| (to - from).absolute()).collect();
         let slides: Vec<_> = from.iter().zip(&to).map(|(a, b)| a.absolute().max(&b.absolute())).collect();
         let bounds = pair.robot.bounds(&pair.route, &pair.reach, &rates, &slides);
         let (speed, acceleration) = (bounds.speed.greatest(), bounds.acceleration.greatest());
-        Self { pair, from, way, speed, acceleration, of, places }
+        Self { pair, ends, speed, acceleration, of, places }
     }
 
     fn at(&self, time: f64) -> Rc<Placed> {
-        let place = || {
-            let t = Interval::from(time);
-            let values: Vec<_> = self.from.iter().zip(&self.way).map(|(from, way)| from + &(way * &t)).collect();
-            Rc::new(self.pair.robot.place(&self.pair.route, &values))
-        };
+        let place = || Rc::new(self.pair.robot.place(&self.pair.route, &values_at(self.ends, time)));
         self.places.borrow_mut().entry((self.of, time.to_bits())).or_insert_with(place).clone()
     }
 
@@ -311,16 +367,18 @@ fn judge_box(
     robot: &Robot,
     target: &Interval,
     parts: &[Value],
-) -> Result<FreeProof, Unread> {
+) -> Result<RobotProof, Unread> {
     let whole = intervals(field(line, "box")?, reader)?;
     let pair = field(line, "pair")?;
     let links = [count(pair, 0)?, count(pair, 1)?];
     if whole.len() != robot.values || links.iter().any(|&link| link >= robot.links.len()) {
         return Err("the box or the pair is not of this robot".to_owned());
     }
+    let answer = field(line, "answer")?;
+    let meets = field(answer, "meets")?.as_bool().ok_or("meets is neither true nor false")?;
+    let mut proof = RobotProof::new(!meets);
     let [a, b] = links.map(|link| &robot.links[link].bodies);
     let mut boxes = vec![vec![Vec::new(); b.len()]; a.len()];
-    let mut proof = FreeProof::NONE;
     for part in parts {
         let [i, k] = [count(part, "body")?, count(part, "other_body")?];
         let (body, other) = a.get(i).zip(b.get(k)).ok_or("there is no such body")?;
@@ -333,12 +391,18 @@ fn judge_box(
             boxes[i][k].push(joint_box);
         }
     }
-    let is_never = field(field(line, "answer")?, "meets")?.as_bool() == Some(false);
-    let covered = boxes.iter().flatten().all(|boxes| is_covered(&whole, &boxes.iter().collect::<Vec<_>>()));
-    if is_never && covered {
-        proof.verdict = Verdict::Proved;
+    if meets {
+        let values = numbers(field(answer, "values")?, reader)?;
+        let is_inside = values.len() == whole.len()
+            && values.iter().zip(&whole).all(|(value, [low, high])| (low..=high).contains(&value));
+        let values: Vec<_> = values.into_iter().map(Interval::from).collect();
+        let placed = |link: usize, body| robot.placed(links[link], count(answer, body)?, &values);
+        let is_met =
+            is_inside && Obstacle::Body(placed(1, "other_body")?).is_met(placed(0, "body")?, target, line, reader)?;
+        return Ok(proof.of([(is_met, NOT_MET)]));
     }
-    Ok(proof)
+    let covered = boxes.iter().flatten().all(|boxes| is_covered(&whole, &boxes.iter().collect::<Vec<_>>()));
+    Ok(proof.of([(covered, NOT_COVERED)]))
 }
 
 impl Pair<'_> {

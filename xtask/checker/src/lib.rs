@@ -14,6 +14,6 @@ mod robot;
 mod tests;
 
 pub use self::certificate::{Bounds, Verdict, judge};
-pub use self::free::{FreeProof, judge_free};
+pub use self::free::{RobotProof, judge_robot};
 pub use self::interval::Interval;
 pub use self::reader::{Points, Reader, Unread};

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::body::{Body, apply, combined, product, transposed};
+use crate::body::{Body, Set, apply, combined, product, transposed};
 use crate::interval::{Interval, Vector};
 use crate::reader::{Reader, Unread, field};
 
@@ -156,6 +156,14 @@ impl Robot {
             }
         }
         Placed { rows, at, levers }
+    }
+
+    /// A body of a link, if there is one, where these joint values have it in the world.
+    pub(crate) fn placed(&self, link: usize, body: usize, values: &[Interval]) -> Result<Body, Unread> {
+        let of = self.links.get(link).and_then(|link| link.bodies.get(body));
+        let Body { core, radius } = of.ok_or("there is no such body")?.clone();
+        let Placed { rows, at, .. } = self.place(&self.route(link, None), values);
+        Ok(Body { core: Set::Image(Box::new(core), rows, at), radius })
     }
 
     /// Bounds for points of the link within `reach` of its frame's origin, whatever the joint values are, if they

@@ -3,7 +3,7 @@
 use convex_support::Vector;
 use gjk_raycast::{FreeBox, JointBoxOutcome, Linkage, LinkageOptions};
 
-use super::{Ask, How, Query, Question, scalar};
+use super::{Ask, How, Query, Question, meeting, scalar};
 use crate::wire::answer::{Answer, Field, Number};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
@@ -56,7 +56,7 @@ impl<V: Space> Question for Ever<V> {
         self.robot.joint_box(self.pair, &self.intervals, self.options).map_err(problem)
     }
 
-    fn certificate(&self, _: &Self::Solution) -> Option<Answer> {
+    fn prove(&self) -> Result<(Self::Solution, Option<Answer>), Problem> {
         let mut free = Vec::new();
         let show = |FreeBox { bodies, joint_box, normal }: FreeBox<'_, V>| {
             let intervals = joint_box.iter().map(|ends| ends.map(Number::of).to_vec()).collect();
@@ -66,17 +66,25 @@ impl<V: Space> Question for Ever<V> {
                 .with("box", Field::Rows(intervals));
             free.push(part.with("plane", Field::vector(normal)));
         };
-        let _ = self.robot.joint_box_with(self.pair, &self.intervals, self.options, show).ok()?;
-        Some(Answer::default().with("free", Field::Answers(free)))
+        let solution = self.robot.joint_box_with(self.pair, &self.intervals, self.options, show).map_err(problem)?;
+        let met = match &solution.outcome {
+            JointBoxOutcome::Meets { values, bodies } => {
+                let placed = |end: usize| self.robot.placed(self.pair[end], bodies[end], values).map_err(problem);
+                meeting(&placed(0)?, &placed(1)?)
+            }
+            _ => Answer::default(),
+        };
+        Ok((solution, Some(met.with("free", Field::Answers(free)))))
     }
 
     fn answer(&self, answer: Self::Solution) -> Result<Answer, Problem> {
         let meets = |meets| Answer::default().with("meets", Field::Flag(meets));
         let found = match answer.outcome {
             JointBoxOutcome::Never => meets(false),
-            JointBoxOutcome::Meets { values, .. } => {
-                meets(true).with("values", Field::Numbers(values.into_iter().map(Number::of).collect()))
-            }
+            JointBoxOutcome::Meets { values, bodies } => meets(true)
+                .with("values", Field::Numbers(values.into_iter().map(Number::of).collect()))
+                .with("body", Field::Count(bodies[0]))
+                .with("other_body", Field::Count(bodies[1])),
             JointBoxOutcome::Undecided { share } => {
                 let boxes = answer.boxes;
                 let message = format!(

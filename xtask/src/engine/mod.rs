@@ -26,10 +26,10 @@ mod track;
 use std::fmt::{Debug, Write as _};
 
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
-use convex_support::{Scalar as _, Vector};
+use convex_support::{Scalar as _, SupportMap, Vector};
 #[cfg(not(target_family = "wasm"))]
 use cpu_time::ThreadTime;
-use gjk_raycast::Certificate;
+use gjk_raycast::{Certificate, DistanceOptions, distance_certificate};
 #[cfg(target_family = "wasm")]
 use std::time::Instant as ThreadTime;
 
@@ -71,6 +71,13 @@ trait Question {
         None
     }
 
+    /// Solves it, and tells what proves the solution.
+    fn prove(&self) -> Result<(Self::Solution, Option<Answer>), Problem> {
+        let solution = self.solve()?;
+        let certificate = self.certificate(&solution);
+        Ok((solution, certificate))
+    }
+
     /// What the library says besides, for which the format has no field, such as second derivatives and batches.
     fn beside(&self, _: &Self::Solution) -> String {
         String::new()
@@ -99,15 +106,14 @@ impl<Q: Question> Ask for Q {
     }
 
     fn ask_with_certificate(&self) -> Result<(Answer, Option<Answer>), Problem> {
-        let solution = self.solve()?;
-        let certificate = self.certificate(&solution).filter(|proof| proof.non_finite().is_none());
+        let (solution, certificate) = self.prove()?;
+        let certificate = certificate.filter(|proof| proof.non_finite().is_none());
         Ok((in_range(self.answer(solution)?)?, certificate))
     }
 
     fn ask_everything(&self) -> Result<String, Problem> {
-        let solution = self.solve()?;
+        let (solution, certificate) = self.prove()?;
         let mut said = format!("{solution:?} {}", self.beside(&solution));
-        let certificate = self.certificate(&solution);
         let answer = in_range(self.answer(solution)?).map_err(|problem| problem.message);
         let _ = write!(said, " {answer:?} {certificate:?}");
         Ok(said)
@@ -143,6 +149,11 @@ fn certificate<V: Vector>(certificate: Certificate<V>) -> Answer {
         answer = answer.with("plane", Field::vector(plane));
     }
     answer.with("points", Field::weighted(points.into_iter().map(|p| (p.direction, p.weight))))
+}
+
+/// What proves that two bodies meet, or are as near as they are.
+fn meeting<V: Vector>(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>) -> Answer {
+    certificate(distance_certificate(a, b, &gjk_raycast::distance(a, b, DistanceOptions::new())))
 }
 
 /// The kinds of queries, as written; a file each.

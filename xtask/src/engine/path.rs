@@ -1,15 +1,17 @@
 //! `path`.
 
-use convex_support::Vector;
 use convex_support::glam::{DVec2, DVec3};
+use convex_support::{Scalar as _, Vector};
 #[cfg(not(target_family = "wasm"))]
 use cpu_time::ThreadTime;
-use gjk_raycast::{FreeInterval, Linkage, LinkageOptions, Met, PathOutcome, PathStop, PathWorkspace, Scene};
+use gjk_raycast::{
+    FreeInterval, Linkage, LinkageOptions, Met, PathContact, PathOutcome, PathStop, PathWorkspace, Scene,
+};
 #[cfg(target_family = "wasm")]
 use std::time::Instant as ThreadTime;
 
 use super::scene::{refused, scene_of};
-use super::{Ask, EVERY, How, Precision, Query, Question, path_picture, scalar, status};
+use super::{Ask, EVERY, How, Precision, Query, Question, meeting, path_picture, scalar, status};
 use crate::mesh::Meshes;
 use crate::wire::answer::{Answer, Field, Number};
 use crate::wire::body::Body;
@@ -81,7 +83,8 @@ impl<V: Space> Question for Way<V> {
         self.robot.path(&self.waypoints, &self.scene, self.options, &mut PathWorkspace::new()).map_err(problem)
     }
 
-    fn certificate(&self, _: &Self::Solution) -> Option<Answer> {
+    /// It is watched, so that brackets are those of what is shown.
+    fn prove(&self) -> Result<(Self::Solution, Option<Answer>), Problem> {
         let mut free = Vec::new();
         let show = |part: FreeInterval<V>| {
             let FreeInterval { edge, from, to, link, body, met, normals } = part;
@@ -93,8 +96,15 @@ impl<V: Space> Question for Way<V> {
             free.push(of_what(answer, met).with("normals", Field::vectors(normals)));
         };
         let mut workspace = PathWorkspace::new();
-        let _ = self.robot.path_with(&self.waypoints, &self.scene, self.options, &mut workspace, show).ok()?;
-        Some(Answer::default().with("free", Field::Answers(free)))
+        let path = self.robot.path_with(&self.waypoints, &self.scene, self.options, &mut workspace, show);
+        let path = path.map_err(problem)?;
+        let met = path.contact().and_then(|contact| self.met(&contact)).unwrap_or_default();
+        Ok((path, Some(met.with("free", Field::Answers(free)))))
+    }
+
+    /// The same path, not watched.
+    fn beside(&self, _: &Self::Solution) -> String {
+        format!("{:?}", self.solve())
     }
 
     fn answer(&self, path: Self::Solution) -> Result<Answer, Problem> {
@@ -124,6 +134,24 @@ impl<V: Space> Question for Way<V> {
             }
         };
         Ok(answer.with("casts", Field::Count(path.work.casts)))
+    }
+}
+
+impl<V: Space> Way<V> {
+    /// What proves that the bodies of a contact meet at the end of its bracket, if it has one. A half-space needs no
+    /// proof.
+    fn met(&self, &PathContact { edge, upper, link, body, met, .. }: &PathContact<V>) -> Option<Answer> {
+        // A contact at a waypoint may be one that the next edge has shown.
+        let one = V::Scalar::ONE;
+        let (edge, time) = if upper > one { (edge + 1, upper - one) } else { (edge, upper) };
+        let [from, to] = [edge, edge + 1].map(|end| &self.waypoints[end.min(self.waypoints.len() - 1)]);
+        let values: Vec<_> = from.iter().zip(to).map(|(&from, &to)| from + (to - from) * time).collect();
+        let placed = |link, body| self.robot.placed(link, body, &values).ok();
+        let a = placed(link, body)?;
+        Some(match met {
+            Met::Obstacle(obstacle) => meeting(&a, self.scene.get(obstacle)?.convex()?),
+            Met::Link { link, body } => meeting(&a, &placed(link, body)?),
+        })
     }
 }
 

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
-use checker::{Bounds, FreeProof, Reader, Unread, Verdict, judge, judge_free};
+use checker::{Bounds, Reader, RobotProof, Unread, Verdict, judge, judge_robot};
 use clap::Args;
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -29,7 +29,7 @@ pub struct Choice {
     /// Draw random queries for so many seconds, answer them, and prove that.
     #[arg(long, value_name = "SECONDS", conflicts_with = "files")]
     random: Option<u64>,
-    /// Draw robots' paths and boxes of joint values. Of these, only what is free is proved.
+    /// Draw robots' paths and boxes of joint values.
     #[arg(long, requires = "random")]
     robots: bool,
     /// Another seed draws other queries.
@@ -172,8 +172,13 @@ pub(crate) fn judge_line(number: u64, line: &[u8], meshes: &Meshes) -> (Verdict,
         };
         let reader = Reader { single, mesh: &mesh };
         if matches!(line.get("query").and_then(Value::as_str), Some("path" | "joint_box")) {
-            let FreeProof { verdict, proved, not_proved } = judge_free(&line, &reader)?;
-            return Ok((verdict, json!({"verdict": said(verdict), PARTS[0]: proved, PARTS[1]: not_proved})));
+            let RobotProof { is_of_free, verdict, because, proved, not_proved } = judge_robot(&line, &reader)?;
+            let claim = if is_of_free { "free" } else { "met" };
+            let mut answer = json!({"claim": claim, "verdict": said(verdict), PARTS[0]: proved, PARTS[1]: not_proved});
+            if let Some(because) = because {
+                answer["because"] = because.into();
+            }
+            return Ok((verdict, answer));
         }
         let (verdict, Bounds { lower, upper }) = judge(&line, &reader)?;
         // Infinity is null.

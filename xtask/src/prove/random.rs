@@ -13,7 +13,7 @@ use crate::draw::{self, KINDS};
 use crate::mesh::Meshes;
 use crate::query::certified;
 
-/// Counts of each kind of query in each precision.
+/// Counts of each kind of query in each precision, and of what is claimed of a robot.
 pub(super) type Tally = BTreeMap<String, Counts>;
 
 /// Draws, answers and judges queries for so many seconds, on all cores; the lines that are not proved go to `told`.
@@ -27,13 +27,16 @@ pub(super) fn prove_for(kinds: &[&str], seconds: u64, seed: u64, told: impl Fn(&
         while Instant::now() < end {
             let query = query(kinds, &mut rng);
             let [kind, precision] = ["query", "precision"].map(|name| query[name].as_str().unwrap_or_default());
-            let counts = tally.entry(format!("{kind} {precision}")).or_default();
+            let mut name = format!("{kind} {precision}");
             let Some(line) = certified(query.to_string().as_bytes(), &meshes) else {
-                counts.unanswered += 1;
+                tally.entry(name).or_default().unanswered += 1;
                 continue;
             };
             let (verdict, said) = judge_line(1, &line, &meshes);
-            counts.add(verdict, &said);
+            if let Some(claim) = said["claim"].as_str() {
+                name = format!("{name} {claim}");
+            }
+            tally.entry(name).or_default().add(verdict, &said);
             if verdict != Verdict::Proved {
                 told(&format!("{said} of {}", String::from_utf8_lossy(line.trim_ascii())));
             }

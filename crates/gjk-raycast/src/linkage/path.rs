@@ -266,7 +266,8 @@ struct First<V: Vector> {
 }
 
 impl<V: Vector> First<V> {
-    /// Takes the cast of a body. The first contact of all is bracketed by the least bounds of each.
+    /// Takes the cast of a body. The first contact of all is bracketed by the least bounds of each, and named is the one
+    /// that is certain first, which is the one that is met at the upper bound.
     fn take(&mut self, cast: MotionCast<V>, &Near { from, body, .. }: &Near<V::Scalar>, link: usize, met: Met) {
         // The sum with a start is rounded.
         let room = if from == V::Scalar::ZERO { from } else { V::Scalar::EPSILON };
@@ -282,7 +283,8 @@ impl<V: Vector> First<V> {
                 let (edge, time, status) = (self.edge, (from + time).min(upper).max(lower), cast.status);
                 let next = PathContact { edge, time, lower, upper, link, body, met, point, normal, status };
                 let known = self.contact.unwrap_or(next);
-                let earlier = if time < known.time { next } else { known };
+                let when = |contact: &PathContact<V>| if contact.is_certain() { contact.upper } else { contact.time };
+                let earlier = if when(&next) < when(&known) { next } else { known };
                 let (lower, upper) = (lower.min(known.lower), upper.min(known.upper));
                 self.contact = Some(PathContact { lower, upper, ..earlier });
             }

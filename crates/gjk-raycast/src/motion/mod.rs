@@ -28,7 +28,7 @@ mod rigid_motion;
 mod rough_look;
 mod trajectory;
 
-pub(crate) use chain_bounds::{Bounds, Linear};
+pub(crate) use chain_bounds::Bounds;
 pub use chain_motion::ChainMotion;
 pub(crate) use motion_cast::{check, checked};
 pub use motion_cast::{motion_cast, motion_cast_with};
