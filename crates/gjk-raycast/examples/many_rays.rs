@@ -45,7 +45,7 @@ struct Sweep {
 impl Sweep {
     /// The range of each ray.
     fn run(&mut self, scene: &[(Shape, Aabb<DVec3>)]) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
-        let mut axes = vec![None; scene.len()];
+        let mut told = vec![None; scene.len()];
         let mut ranges = Vec::new();
         for ring in -8..=8 {
             for spoke in 0..900 {
@@ -55,21 +55,23 @@ impl Sweep {
                     direction: turn * DVec3::new(1.0, f64::from(ring) * 0.01 + 0.003, 1e-3),
                 };
                 let mut range = f64::INFINITY;
-                for ((shape, bounds), axis) in scene.iter().zip(&mut axes) {
+                for ((shape, bounds), told) in scene.iter().zip(&mut told) {
                     if self.boxes && !may_hit(bounds, &ray, range) {
                         continue;
                     }
-                    let mut options = RayCastOptions::new();
-                    options.axis = if self.warm { *axis } else { None };
+                    let mut options = RayCastOptions::new().with_warm_start(*told);
                     if self.nearest {
                         options = options.with_max_lambda(range);
                     }
                     let cast = ray_cast(shape, ray, options)?;
                     self.casts += 1;
                     self.support_points += cast.iterations;
+                    if self.warm {
+                        *told = cast.warm_start(*told);
+                    }
                     match cast.outcome {
-                        Outcome::Hit(hit) => (range, *axis) = (range.min(hit.lambda), hit.normal),
-                        Outcome::Miss(miss) => *axis = Some(miss.axis),
+                        Outcome::Hit(hit) => range = range.min(hit.lambda),
+                        Outcome::Miss(_) => {}
                         Outcome::Undecided => return Err("no ray here is too close to call".into()),
                     }
                 }
@@ -84,7 +86,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = scene()?;
     let mut sweeps = [
         ("everything", Sweep::default()),
-        ("the last axis remembered", Sweep { warm: true, ..Sweep::default() }),
+        ("what the last ray told", Sweep { warm: true, ..Sweep::default() }),
         ("and rays ended at the nearest hit", Sweep { warm: true, nearest: true, ..Sweep::default() }),
         ("and boxes before shapes", Sweep { warm: true, nearest: true, boxes: true, ..Sweep::default() }),
     ];

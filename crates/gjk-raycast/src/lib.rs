@@ -165,6 +165,7 @@ mod simplex;
 mod start_in_contact;
 mod symmetric;
 mod unit;
+mod warm_start;
 
 pub use convex_support;
 pub use convex_support::{MotionGradient, MotionHessian};
@@ -216,3 +217,4 @@ pub use scene::{
 };
 pub use signed_distance::{signed_distance, signed_distance_with};
 pub use simplex::SubAlgorithm;
+pub use warm_start::WarmStart;

@@ -11,7 +11,7 @@ use crate::shape::Shape;
 use crate::start_in_contact::StartingPair;
 use crate::{
     Iterate, LinearCast, LinearCastOptions, LinearHit, Miss, Motion, Outcome, Ray, RayCastError, RayCastOptions,
-    StartInContact, Status,
+    StartInContact, Status, WarmStart,
 };
 
 /// Shapes that are apart by so many ε of their sizes, and of how far away they are, may be in contact: they and their
@@ -230,7 +230,7 @@ fn ray_of<V: Vector>(
         .with_sub_algorithm(options.sub_algorithm)
         .with_method(options.method);
     // Seen from b, a is at the outside of the obstacle: normals of A − B point out of a.
-    wanted.axis = options.axis.map(|axis| -axis);
+    wanted.warm_start = options.warm_start.map(WarmStart::reversed);
     // The ray starts at zero, where both shapes are in place: at b's origin, seen from a's.
     let mut ray = Ray { source: origin_b, direction: motion.velocity_b - motion.velocity_a };
     if ray.direction == V::ZERO {

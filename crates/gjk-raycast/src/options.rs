@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::SubAlgorithm;
+use crate::{SubAlgorithm, WarmStart};
 
 /// Iterations after which a query gives up. Polytopes and smooth shapes need a dozen; the cap only bounds the time
 /// spent on a support map that is not one.
@@ -38,6 +38,20 @@ macro_rules! setters {
         pub const fn with_axis(mut self, axis: V) -> Self {
             self.axis = Some(axis);
             self
+        }
+    };
+    (@ warm_start) => {
+        /// With what the last frame [tells](Self::warm_start), if there was one.
+        #[must_use]
+        pub const fn with_warm_start(mut self, warm_start: Option<WarmStart<V>>) -> Self {
+            self.warm_start = warm_start;
+            self
+        }
+
+        /// With a [first axis](WarmStart::new).
+        #[must_use]
+        pub const fn with_axis(self, axis: V) -> Self {
+            self.with_warm_start(Some(WarmStart::new(axis)))
         }
     };
     (@ limit) => {
@@ -277,8 +291,8 @@ pub struct RayCastOptions<V: Vector> {
     pub tolerance: V::Scalar,
     /// The iterations after which to give up, those of second looks included. Default: 200.
     pub max_iterations: usize,
-    /// A first guess of the outward normal or of a separating axis, such as the last answer's. Default: none.
-    pub axis: Option<V>,
+    /// What the last frame tells of the outward normal or of a separating axis. Default: nothing.
+    pub warm_start: Option<WarmStart<V>>,
     /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
     pub sub_algorithm: SubAlgorithm,
     /// How planes are found. Default: [`CastMethod::Portal`].
@@ -294,7 +308,7 @@ impl<V: Vector> RayCastOptions<V> {
             max_lambda: V::Scalar::infinity(),
             tolerance: V::Scalar::ZERO,
             max_iterations: MAX_ITERATIONS,
-            axis: None,
+            warm_start: None,
             sub_algorithm: SubAlgorithm::Regions,
             method: CastMethod::Portal,
         }
@@ -314,7 +328,7 @@ impl<V: Vector> RayCastOptions<V> {
         self
     }
 
-    setters!(tolerance, max_iterations, axis, sub_algorithm, method);
+    setters!(tolerance, max_iterations, warm_start, sub_algorithm, method);
 }
 
 impl<V: Vector> Default for RayCastOptions<V> {
@@ -344,8 +358,8 @@ pub struct LinearCastOptions<V: Vector> {
     pub tolerance: V::Scalar,
     /// The iterations after which to give up, those of second looks included. Default: 200.
     pub max_iterations: usize,
-    /// A first guess of the direction from `b` to `a` at contact, such as the last answer's normal. Default: none.
-    pub axis: Option<V>,
+    /// What the last frame tells of the direction from `b` to `a` at contact. Default: nothing.
+    pub warm_start: Option<WarmStart<V>>,
     /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
     pub sub_algorithm: SubAlgorithm,
     /// How planes are found. Default: [`CastMethod::Portal`].
@@ -362,13 +376,13 @@ impl<V: Vector> LinearCastOptions<V> {
             start_in_contact: StartInContact::Report,
             tolerance: V::Scalar::ZERO,
             max_iterations: MAX_ITERATIONS,
-            axis: None,
+            warm_start: None,
             sub_algorithm: SubAlgorithm::Regions,
             method: CastMethod::Portal,
         }
     }
 
-    setters!(max_time, target_distance, start_in_contact, tolerance, max_iterations, axis, sub_algorithm, method);
+    setters!(max_time, target_distance, start_in_contact, tolerance, max_iterations, warm_start, sub_algorithm, method);
 }
 
 impl<V: Vector> Default for LinearCastOptions<V> {

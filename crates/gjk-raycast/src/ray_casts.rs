@@ -5,17 +5,17 @@ use alloc::vec::Vec;
 
 use convex_support::SupportMap;
 
-use crate::{Outcome, Ray, RayCast, RayCastError, RayCastOptions, ray_cast};
+use crate::{Ray, RayCast, RayCastError, RayCastOptions, ray_cast};
 
-/// Rays after which a batch forgets the axis, so that its pieces can be cast on any number of threads and come out
+/// Rays after which a batch forgets the warm start, so that its pieces can be cast on any number of threads and come out
 /// alike.
 const RAYS_PER_PIECE: usize = 256;
 
-/// Casts many rays against one shape, in their order; each begins with the axis that the one before ended with.
+/// Casts many rays against one shape, in their order; each begins with [what the one before tells](crate::WarmStart).
 ///
 /// Rays that are near one another, such as those of a picture or a lidar, then take fewer support points each. The hits
 /// and misses are those of [`ray_cast`], within the same bounds; the last digits may differ from those of a cast that
-/// begins with another axis. Every 256 rays the axis of the options is taken again, so that batches can be cut there.
+/// begins otherwise. Every 256 rays the warm start of the options is taken again, so that batches can be cut there.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};
@@ -40,14 +40,10 @@ pub fn ray_casts<S: SupportMap + ?Sized>(
     options: RayCastOptions<S::Vector>,
 ) -> impl Iterator<Item = Result<RayCast<S::Vector>, RayCastError>> {
     rays.chunks(RAYS_PER_PIECE).flat_map(move |piece| {
-        let mut axis = options.axis;
+        let mut warm_start = options.warm_start;
         piece.iter().map(move |&ray| {
-            let cast = ray_cast(target, ray, RayCastOptions { axis, ..options })?;
-            axis = match cast.outcome {
-                Outcome::Hit(hit) => hit.normal.or(axis),
-                Outcome::Miss(miss) => Some(miss.axis),
-                Outcome::Undecided => axis,
-            };
+            let cast = ray_cast(target, ray, RayCastOptions { warm_start, ..options })?;
+            warm_start = cast.warm_start(warm_start);
             Ok(cast)
         })
     })

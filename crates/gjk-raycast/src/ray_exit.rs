@@ -49,7 +49,7 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
     }
     if hit.lambda > end {
         // The line leaves the shape after the ray has ended, which is in the shape if it meets it at all.
-        let entry = ray_cast(target, ray, RayCastOptions { axis: None, ..options })?;
+        let entry = ray_cast(target, ray, RayCastOptions { warm_start: None, ..options })?;
         exit.iterations += entry.iterations;
         return Ok(match entry.outcome {
             Outcome::Hit(_) => {

@@ -3,6 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use crate::WarmStart;
 use crate::simplex::MAX_POINTS;
 
 /// How an iterative method ended. The bounds of the answer hold in every case.
@@ -193,12 +194,23 @@ impl<H, V> Outcome<H, V> {
     }
 }
 
+impl<H, V: Vector> Outcome<H, V> {
+    /// What it tells the next frame, given what this one was told.
+    fn warm_start(&self, before: Option<WarmStart<V>>, normal: impl FnOnce(&H) -> Option<V>) -> Option<WarmStart<V>> {
+        match self {
+            Self::Hit(hit) => normal(hit).map(|normal| WarmStart::after(before, normal)).or(before),
+            Self::Miss(miss) => Some(WarmStart::new(miss.axis)),
+            Self::Undecided => before,
+        }
+    }
+}
+
 /// Why a cast misses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Miss<V> {
     /// A unit vector along which a plane separates the shape from the whole ray (up to its end, if it has one),
-    /// pointing from the shape to the ray; a good [first axis](crate::RayCastOptions::axis) for a similar query.
+    /// pointing from the shape to the ray; a good [first axis](crate::WarmStart::new) for a similar query.
     ///
     /// Its components are rounded, so that at a distance `L` along the ray the plane is off by `L` times half an ulp.
     /// In `f32`, a point of the ray that is a million sizes of the shape away may be on the wrong side of it.
@@ -233,6 +245,13 @@ pub struct RayCast<V: Vector> {
 }
 
 impl<V: Vector> RayCast<V> {
+    /// What this answer tells the [cast of the next frame](crate::RayCastOptions::warm_start), given what it was told
+    /// itself.
+    #[must_use]
+    pub fn warm_start(&self, before: Option<WarmStart<V>>) -> Option<WarmStart<V>> {
+        self.outcome.warm_start(before, |hit| hit.normal)
+    }
+
     /// Whether the outcome is certain: a hit is where the upper bound is finite, and a miss always.
     #[must_use]
     pub fn is_certain(&self) -> bool {
@@ -315,6 +334,13 @@ pub struct LinearCast<V: Vector> {
 }
 
 impl<V: Vector> LinearCast<V> {
+    /// What this answer tells the [cast of the next frame](crate::LinearCastOptions::warm_start), given what it was
+    /// told itself.
+    #[must_use]
+    pub fn warm_start(&self, before: Option<WarmStart<V>>) -> Option<WarmStart<V>> {
+        self.outcome.warm_start(before, |hit| hit.normal)
+    }
+
     /// Whether the outcome is certain: a hit is where the upper bound is finite, and a miss always.
     #[must_use]
     pub fn is_certain(&self) -> bool {

@@ -46,7 +46,7 @@ impl<V: Vector> StartingPair<'_, V> {
     fn signed_distance(&self, options: &LinearCastOptions<V>, depth_limit: V::Scalar) -> SignedDistance<V> {
         let mut wanted = SignedDistanceOptions::new().with_depth_limit(depth_limit);
         wanted.max_iterations = wanted.max_iterations.min(options.max_iterations);
-        wanted.axis = options.axis;
+        wanted.axis = options.warm_start.map(|warm| warm.axis);
         signed_distance_of_any(self.a, self.b, wanted)
     }
 

@@ -3,14 +3,13 @@
 use crate::common::behind_pointers::{linear_cast, ray_cast};
 use convex_support::glam::{DQuat, DVec3, Vec3A};
 use convex_support::{Cone, Cuboid, Cylinder, Ellipsoid, Posed, SupportMap, support_value};
-use gjk_raycast::{Iterate, LinearCastOptions, Motion, Ray, RayCastOptions, Status, linear_cast_with};
+use gjk_raycast::{Iterate, LinearCastOptions, Motion, Ray, RayCastOptions, Status, WarmStart, linear_cast_with};
 
 const VALID: &str = "valid numbers";
 
 /// The first hit of a ray whose search must end by itself.
 fn hit(target: &impl SupportMap<Vector = DVec3>, source: DVec3, direction: DVec3, axis: Option<DVec3>) -> f64 {
-    let mut options = RayCastOptions::new();
-    options.axis = axis;
+    let options = RayCastOptions::new().with_warm_start(axis.map(WarmStart::new));
     let cast = ray_cast(target, Ray { source, direction }, options).expect("a finite ray");
     assert_eq!(cast.status, Status::Converged, "{cast:?}");
     cast.outcome.hit().expect("a hit").lambda

@@ -49,3 +49,4 @@ mod starts;
 mod stepping;
 mod sub_algorithms;
 mod tolerance;
+mod warm_start;

@@ -9,8 +9,8 @@ use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, SupportMap, closest_point,
 };
 use gjk_raycast::{
-    CastMethod, Distance, DistanceOptions, IntersectOptions, Outcome, Ray, RayCastOptions, Status, SubAlgorithm,
-    distance, distance_with, intersects, iterative_ray_cast_with, ray_cast, ray_cast_with,
+    CastMethod, Distance, DistanceOptions, IntersectOptions, Ray, RayCastOptions, Status, SubAlgorithm, distance,
+    distance_with, intersects, iterative_ray_cast_with, ray_cast, ray_cast_with,
 };
 use proptest::prelude::*;
 
@@ -186,18 +186,17 @@ fn short_rays_end_early() {
 fn the_last_axis_saves_iterations() {
     let hull = Polytope::new(directions(100).map(DVec3::from_array)).expect("finite");
     let mut casts = [0, 0];
-    let mut axis = None;
+    let mut told = None;
     for frame in 0..200 {
         let height = 1.05 + 1e-3 * f64::from(frame);
         let ray =
             Ray { source: DVec3::new(-4.0, height, 0.1), direction: DVec3::new(1.0, 1e-3 * f64::from(frame % 7), 0.0) };
-        let mut warm = RayCastOptions::new();
-        warm.axis = axis;
+        let warm = RayCastOptions::new().with_warm_start(told);
         for (count, options) in casts.iter_mut().zip([RayCastOptions::new(), warm]) {
             let cast = ray_cast(&hull, ray, options).expect("finite");
             *count += cast.iterations;
-            let Outcome::Miss(miss) = cast.outcome else { panic!("it passes by: {frame} {cast:?}") };
-            axis = Some(miss.axis);
+            assert!(cast.outcome.is_miss(), "it passes by: {frame} {cast:?}");
+            told = cast.warm_start(told);
         }
     }
     assert!(2 * casts[1] <= casts[0], "cold and warm casts: {casts:?}");

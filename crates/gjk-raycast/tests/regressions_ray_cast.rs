@@ -283,9 +283,10 @@ fn a_grazing_hit_is_bracketed_by_its_lesser_slope() {
         direction: DVec3::new(0.7187691680792078, -0.30536876865379214, 0.5357431193242176),
     };
     let axis = DVec3::new(-0.4446695582394215, 0.837573233373685, -0.3173957509342371);
-    let mut options =
-        RayCastOptions::new().with_tolerance(0.007890631001332341).with_sub_algorithm(SubAlgorithm::Johnson);
-    options.axis = Some(axis);
+    let options = RayCastOptions::new()
+        .with_tolerance(0.007890631001332341)
+        .with_sub_algorithm(SubAlgorithm::Johnson)
+        .with_axis(axis);
     let cast = ray_cast(&Posed::new(cuboid, turn, place).expect("a rotation"), ray, options).expect("finite");
     assert!(cast.lower <= 308.198737809357 && 308.198737809357 <= cast.upper, "{cast:?}");
 }

@@ -36,17 +36,29 @@ pub(crate) fn cast<V: Vector>(
     options: &RayCastOptions<V>,
     observer: &mut Observer<'_, V>,
 ) -> Cast<V> {
-    let mut bracket = Bracket::new(body, ray, direction_error, part, options, observer);
-    let found = match bracket.enter_ball() {
-        Ok(()) if bracket.error < V::Scalar::infinity() => search(&mut bracket),
-        // Of numbers out of range nothing is known.
-        Ok(()) => Err(Stop::Exhausted(Status::Stalled)),
-        Err(stop) => Err(stop),
-    };
-    if found.is_ok() && bracket.is_entry_open() && bracket.is_past_start() {
-        bound_entry(&mut bracket);
+    let (mut is_warm, mut iterations) = (options.warm_start.is_some(), 0);
+    loop {
+        let mut bracket = Bracket::new(body, ray, direction_error, part, options, observer);
+        bracket.go_on(iterations, is_warm);
+        let found = match bracket.enter_ball() {
+            Ok(()) if bracket.error < V::Scalar::infinity() => search(&mut bracket),
+            // Of numbers out of range nothing is known.
+            Ok(()) => Err(Stop::Exhausted(Status::Stalled)),
+            Err(stop) => Err(stop),
+        };
+        if found.is_ok() && bracket.is_entry_open() && bracket.is_past_start() {
+            bound_entry(&mut bracket);
+        }
+        let is_known = match &found {
+            Ok(_) => !bracket.is_entry_open(),
+            Err(stop) => matches!(stop, Stop::Miss(_)),
+        };
+        if is_known || !is_warm {
+            return conclude(&bracket, found);
+        }
+        // What the last frame tells leaves it in doubt, and is forgotten.
+        (is_warm, iterations) = (false, bracket.iterations());
     }
-    conclude(&bracket, found)
 }
 
 /// What the shape knows first, then the quicker search, and Algorithm 3 where both are in doubt.
@@ -60,6 +72,9 @@ fn search<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop
         match if V::DIM == 3 { portal(bracket) } else { Err(Stop::InDoubt) } {
             Err(Stop::InDoubt | Stop::Touches(_)) => {}
             found => return found,
+        }
+        if V::DIM == 3 && bracket.warm_start().is_some() {
+            return Err(Stop::InDoubt);
         }
     }
     // In the plane this is the search. Elsewhere it is what is left where rounding decides.

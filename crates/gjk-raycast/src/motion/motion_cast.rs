@@ -13,7 +13,7 @@ use crate::body::{Both, Shapes};
 use crate::error::RayCastError;
 use crate::ray::check_limits;
 use crate::ray::{check_finite, check_numbers};
-use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, linear_cast};
+use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, WarmStart, linear_cast};
 
 /// When two moving bodies first touch, and where.
 ///
@@ -129,7 +129,7 @@ pub(crate) fn linear_options<V: Vector>(options: &MotionCastOptions<V>) -> Linea
         .with_start_in_contact(options.start_in_contact)
         .with_tolerance(options.tolerance)
         .with_max_iterations(options.max_iterations);
-    wanted.axis = options.axis;
+    wanted.warm_start = options.axis.map(WarmStart::new);
     wanted
 }
 

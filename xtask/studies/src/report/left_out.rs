@@ -4,7 +4,7 @@ use benches::ours::{self, Effort};
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{Cylinder, Ellipsoid, InvalidShape, Polytope, Posed, Segment, SupportMap};
 use ellip_margin::{Clearance, MarginOptions};
-use gjk_raycast::{IntersectOptions, Outcome, Ray, RayCastOptions, intersects, ray_cast};
+use gjk_raycast::{IntersectOptions, Outcome, Ray, RayCastOptions, WarmStart, intersects, ray_cast};
 use workloads::pairs::{PAIR_NAMES, Pair};
 use workloads::{w3_distance, w3b_intersect};
 
@@ -176,9 +176,8 @@ pub(super) fn coherence() -> Coherence {
                     continue;
                 };
                 let ours = |axis: Option<DVec3>| {
-                    let mut options = RayCastOptions::default().with_max_lambda(1.0);
-                    options.axis = axis;
-                    ray_cast(&moved, ray, options).ok()
+                    let warm = axis.map(WarmStart::new);
+                    ray_cast(&moved, ray, RayCastOptions::default().with_max_lambda(1.0).with_warm_start(warm)).ok()
                 };
                 let meet = |axis: Option<DVec3>| {
                     let mut options = IntersectOptions::default();

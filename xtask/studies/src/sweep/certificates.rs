@@ -4,8 +4,8 @@
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{Scalar, Vector3};
 use gjk_raycast::{
-    DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Ray, RayCastOptions, SubAlgorithm, distance,
-    intersects, linear_cast, ray_cast,
+    DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Ray, RayCastOptions, SubAlgorithm, WarmStart,
+    distance, intersects, linear_cast, ray_cast,
 };
 use workloads::rng::Rng;
 
@@ -105,7 +105,7 @@ fn single<V: Vector3>(cell: &mut Row, solid: &Solid, size: f64, rng: &mut Rng) {
             .with_max_iterations(choice.max_iterations)
             .with_tolerance(V::Scalar::from_f64(choice.tolerance))
             .with_sub_algorithm(choice.sub_algorithm);
-        options.axis = choice.axis;
+        options.warm_start = choice.axis.map(WarmStart::new);
         let end = choice.end.map_or(f64::INFINITY, |part| rounded::<V>(part * from * size / norm(direction)));
         options.max_lambda = V::Scalar::from_f64(end);
         let answer =
@@ -142,7 +142,7 @@ fn double<V: Vector3>(cell: &mut Row, mut a: Solid, b: &Solid, size: f64, rng: &
                 .with_tolerance(scalar(choice.tolerance))
                 .with_max_time(scalar(end))
                 .with_sub_algorithm(choice.sub_algorithm);
-            options.axis = choice.axis;
+            options.warm_start = choice.axis.map(WarmStart::new);
             let answer = linear_cast(&a.build::<V>(), &built_b, motion, options).expect(FINITE);
             let cast = Cast::of_motion([&a, b], velocities, end, &answer);
             verdict = cast.judge(&Obstacle::new(&a, Some(b), known.as_ref()), cell.epsilon());

@@ -14,6 +14,7 @@ mod sqp;
 mod triangle;
 
 use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
 
 use super::bracket::Bracket;
 use super::{RayContact, Stop};
@@ -22,30 +23,41 @@ use rounded::rounded;
 use smooth::smooth;
 use triangle::triangle;
 
+/// The tilt that shows another corner of the face that the last plane was across.
+const OF_FACE: f64 = 0.03;
+
+/// By how much the second plane is tilted from a first one that is off by an angle.
+///
+/// If it is tilted by less than the first one is off, both may show the same point. A smooth piece that is looked at
+/// from aside is known to the third order of that angle; where a polytope is looked at along, it is the same.
+fn tilt<V: Vector>(bracket: &Bracket<'_, V>, error: V::Scalar) -> V::Scalar {
+    let of_face = V::Scalar::from_f64(OF_FACE);
+    if bracket.body.is_curved() { (error + error).max(V::Scalar::EPSILON.sqrt()).min(of_face) } else { of_face }
+}
+
 /// Closes the bracket, or finds a plane that the whole ray is before.
 #[inline(always)]
 pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     // The first plane: the one given, or the tangent plane of the ball about the body where the ray enters it; and how
     // far the next one is tilted.
-    let (first, tilt) = match bracket.options.axis.and_then(Vector::unit) {
-        Some(axis) => (axis, V::Scalar::from_f64(0.03)),
-        None => (bracket.x(), V::Scalar::ONE),
-    };
+    let told = bracket.warm_start().and_then(|warm| Some((warm.axis.unit()?, tilt(bracket, warm.error()))));
+    let (first, tilt) = told.unwrap_or_else(|| (bracket.x(), Scalar::ONE));
     let frame = RayFrame::new(bracket.line(), Scalar::ZERO);
     let curved = frame.is_curved(bracket.body, first);
     if !curved && bracket.radius > Scalar::ZERO {
         return rounded(bracket, &frame, first, tilt);
     }
+    let mut seen = None;
     let mut frame = if curved { RayFrame::new(bracket.line(), bracket.radius) } else { frame };
     if curved {
-        match smooth(bracket, &frame, first) {
+        match smooth(bracket, &frame, first, tilt < Scalar::ONE, &mut seen) {
             Err(Stop::InDoubt) => {}
             found => return found,
         }
     }
     // A second time where the line was found to touch the body, and is moved inward.
     for _ in 0..2 {
-        match triangle(bracket, &frame, first, tilt) {
+        match triangle(bracket, &frame, first, seen.take(), tilt) {
             Err(Stop::Touches(inward)) => frame = frame.moved(inward),
             found => return found,
         }

@@ -16,7 +16,7 @@ use crate::cast::Stop;
 use crate::cast::bracket::Bracket;
 use crate::cast::line::Line;
 use crate::curvature;
-use crate::symmetric::{Across, Symmetric, axes_across, cross};
+use crate::symmetric::{Across, Symmetric, axes_across, cross, dot};
 
 /// A support point as it is seen along the ray.
 #[derive(Clone, Copy, Default)]
@@ -87,6 +87,12 @@ impl<S: Scalar> Alpha<S> {
     /// Whether planes that are crossed `gap` apart along the ray are at most `distance` apart, `gap ≤ distance·|n|`.
     pub(super) fn is_within(self, gap: S, distance: S) -> bool {
         gap * gap.abs() <= distance * distance * self.length_squared()
+    }
+
+    /// The plane tilted towards a vector across the ray.
+    pub(super) fn tilted(self, toward: Across<S>, tilt: S) -> Self {
+        let k = tilt * (self.length_squared() / dot(toward, toward)).sqrt();
+        Self { a: self.a + toward.0 * k, b: self.b + toward.1 * k }
     }
 
     pub(super) fn plane(self) -> RayPlane<S> {
@@ -180,6 +186,34 @@ impl<V: Vector> RayFrame<V> {
         let aside = swept - self.foot;
         let (u, v, t) = (aside.dot(self.e1), aside.dot(self.e2), swept.dot(self.d));
         Ok(RayPoint { u, v, t, point, witness, alpha: None })
+    }
+
+    /// A point of a body that no radius is added to, by what it is made of.
+    pub(super) fn seen(&self, witness: PointPair<V>) -> RayPoint<V> {
+        let point = witness.a - witness.b;
+        let aside = point - self.foot;
+        let (u, v, t) = (aside.dot(self.e1), aside.dot(self.e2), point.dot(self.d));
+        RayPoint { u, v, t, point, witness, alpha: None }
+    }
+
+    /// Both shapes' support points as the normal of a plane that the ray crosses, one against it, changes across it.
+    ///
+    /// What they move by is along the plane, `n·H·δ = 0`, so that the part across the ray tells all of it.
+    pub(super) fn turned(
+        &self,
+        body: &dyn CastBody<Vector = V>,
+        n: V,
+        change: V,
+        witness: PointPair<V>,
+    ) -> PointPair<V> {
+        let (across, change) = (self.split(n).0, self.split(change).0);
+        let axes = [self.e1, self.e2];
+        let moved = |hessian: Symmetric<V::Scalar>| {
+            let shift = hessian.times(change);
+            self.vector(shift) + self.d * dot(across, shift)
+        };
+        let (both, a) = (moved(body.hessian(n, axes)), moved(body.hessian_of_first(n, axes)));
+        PointPair { a: witness.a + a, b: witness.b - (both - a) }
     }
 
     /// The support point of a plane.

@@ -21,11 +21,18 @@ const MAX_STEPS: usize = 12;
 /// Planes along the ray, between it and an ellipsoid that it misses, that do not separate it from the body.
 const MAX_MISSES: usize = 2;
 
+/// The angle that a plane which the last frame tells is off by at most, where it is the same piece's.
+const FAR: f64 = 0.3;
+
 /// Replaces the body by the ellipsoid that osculates it, takes the plane where the ray enters that, and so on.
+///
+/// Where the last frame tells the plane, and another piece has the point that is `seen` there, that ellipsoid is none.
 pub(super) fn smooth<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
     first: V,
+    is_warm: bool,
+    seen: &mut Option<RayPoint<V>>,
 ) -> Result<RayContact<V>, Stop<V>> {
     let tolerance = bracket.tolerance();
     let mut next = Next { n: first, alpha: None };
@@ -43,6 +50,9 @@ pub(super) fn smooth<V: Vector>(
         p.alpha = alpha;
         if let Some(alpha) = alpha {
             best.improve(bracket, frame, alpha, &p, Scalar::ZERO)?;
+            if is_warm && let Some(found) = in_ball(bracket, frame, &best, &p, hessian) {
+                return Ok(found);
+            }
             pieces.follow(RayPiece { p, alpha, hessian });
             if let Some(below) = pieces.passed(bracket.noise) {
                 if below.high < bracket.low() {
@@ -68,6 +78,14 @@ pub(super) fn smooth<V: Vector>(
             if let Some(n) = n.unit() {
                 bracket.advance(n, p.point)?;
             }
+            if is_warm && misses == 0 {
+                let (x, y) = hessian.solve(p.across());
+                // NaN fails this too.
+                if !((x * x + y * y) * n.length_squared() <= V::Scalar::from_f64(FAR * FAR)) {
+                    *seen = Some(p);
+                    return Err(Stop::InDoubt);
+                }
+            }
             if misses == MAX_MISSES {
                 return Err(Stop::InDoubt);
             }
@@ -76,6 +94,38 @@ pub(super) fn smooth<V: Vector>(
         misses += usize::from(next.alpha.is_none());
     }
     Err(Stop::InDoubt)
+}
+
+/// The contact at a ball that rolls within the body and touches its surface at `p`, if the line enters that within
+/// rounding of the best plane: sooner by a support point than a point of the body is on the line.
+///
+/// With `c = p − ρ·n` the ball's centre, `n` of unit length, the line enters it at `t_c − √(ρ² − u_c² − v_c²)`: behind
+/// the plane by the square of the distance from `p`. The normal and both shapes' points are moved to where Newton's step
+/// leads, `δ` with `H·δ = −(u, v)`, by what each has of the core's Hessian.
+#[inline(never)]
+fn in_ball<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    frame: &RayFrame<V>,
+    best: &BestPlane<V>,
+    p: &RayPoint<V>,
+    hessian: Symmetric<V::Scalar>,
+) -> Option<RayContact<V>> {
+    let (radius, alpha) = (bracket.rolling_radius, best.alpha);
+    let per_length = radius / alpha.length();
+    let (u, v) = (p.u - alpha.a * per_length, p.v - alpha.b * per_length);
+    let high = p.t + per_length - (radius * radius - (u * u + v * v)).sqrt();
+    // NaN fails this too.
+    if !(p.alpha == Some(alpha) && alpha.is_within(high - best.tau, bracket.noise)) {
+        return None;
+    }
+    let n = frame.normal(alpha.plane());
+    let unit = n.unit()?;
+    let (x, y) = hessian.solve(p.across());
+    let change = frame.vector((-x, -y));
+    let witness = frame.turned(bracket.body, n, change, p.witness);
+    bracket.advance(unit, p.point).ok()?;
+    let found = bracket.close_in(radius, p.point - unit * (radius - bracket.radius), witness, high).ok()?;
+    Some(RayContact { normal: (n + change).unit(), ..found })
 }
 
 /// The normal of the next plane; by its `α`, if the ray crosses it.

@@ -20,7 +20,7 @@ use super::pieces::{RayPiece, RayPieces};
 use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint, weights_of_zero};
 use crate::cast::bracket::Bracket;
 use crate::cast::{RayContact, Stop};
-use crate::symmetric::Symmetric;
+use crate::symmetric::{Across, Symmetric};
 
 /// Support points of the search.
 const MAX_STEPS: usize = 40;
@@ -28,18 +28,36 @@ const MAX_STEPS: usize = 40;
 /// Steps of the models that do not halve the bracket before the next one is the portal's own plane.
 const MAX_FAILURES: i32 = 3;
 
+/// How many times as far as the last planes were tilted the next one is, at most, from pieces that do not enclose the
+/// line.
+const FAR: f64 = 8.0;
+
 /// Brings a portal nearer, by planes that the curvature of the body suggests as long as they close the bracket fast,
-/// and by the portal's own.
+/// and by the portal's own. The points were found by planes that were tilted from one another by so much.
 pub(super) fn sqp<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
     mut portal: Portal<V>,
     mut best: BestPlane<V>,
+    tilt: V::Scalar,
 ) -> Result<RayContact<V>, Stop<V>> {
     let mut alpha = if portal.high.is_finite() { portal.alpha() } else { best.alpha };
     let mut pieces = RayPieces::new();
     for p in &portal.corners {
         pieces.push(piece(bracket, frame, *p, alpha), bracket.noise);
+    }
+    // What the last frame tells is near enough for models, and too near for the plane through the points.
+    if tilt < Scalar::ONE
+        && let Some(newest) = pieces.all().last()
+    {
+        let is_enclosed = portal.high.is_finite();
+        let far = tilt * V::Scalar::from_f64(FAR) * newest.alpha.length();
+        let is_near = |(x, y): Across<_>| x * x + y * y <= far * far;
+        match best_plane(pieces.all(), newest.alpha, bracket.noise, Scalar::ONE) {
+            Some((to, _)) if is_enclosed || is_near(newest.alpha.change_to(to)) => alpha = to,
+            _ if is_enclosed => {}
+            _ => return Err(Stop::InDoubt),
+        }
     }
     let start = bracket.low();
     let mut steps = Steps { gap: V::Scalar::infinity(), failures: 0, error_weight: V::Scalar::ONE };

@@ -12,10 +12,12 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::OF_FACE;
 use super::closing::BestPlane;
 use super::pieces::is_surrounded;
 use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use super::sqp::{Portal, sqp};
+use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
 use crate::cast::{RayContact, Stop};
 use crate::symmetric::dot;
@@ -23,18 +25,26 @@ use crate::symmetric::dot;
 /// Support points until the portal has to be found; half as many where curvature may tell more.
 const MAX_OUTSIDE: usize = 16;
 
+/// The tilt up to which smooth pieces are looked at from near.
+const NEAR: f64 = 0.01;
+
 /// Exchanges of a point that bring the portal no nearer.
 pub(super) const MAX_EXCHANGES: usize = 12;
 
-/// Closes the bracket, beginning with a plane across `first`, and with planes tilted by `tilt` until a portal is found.
+/// Closes the bracket, beginning with a plane across `first`, which may be known to support the body at `seen`, and with
+/// planes tilted by `tilt` until a portal is found.
 #[inline(always)]
 pub(super) fn triangle<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
     first: V,
+    seen: Option<RayPoint<V>>,
     tilt: V::Scalar,
 ) -> Result<RayContact<V>, Stop<V>> {
-    let mut p = frame.support(bracket, first)?;
+    let mut p = match seen {
+        Some(p) => p,
+        None => frame.support(bracket, first)?,
+    };
     let mut best = BestPlane::none(bracket.end());
     best.begin(bracket, frame, first, &mut p, Scalar::ZERO)?;
     if !(dot(p.across(), p.across()) > bracket.noise * bracket.noise) {
@@ -48,12 +58,24 @@ pub(super) fn triangle<V: Vector>(
     }
     let mut planes = Planes { frame, alpha: best.alpha, best, tilt };
     let mut q = planes.opposite(bracket, &p)?;
+    if tilt < Scalar::ONE {
+        if let Some(found) = mixed(frame, &p, &q) {
+            return planes.shrink(bracket, found);
+        }
+        // Pieces known from so near tell where to look next before the line is enclosed.
+        if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.body.is_curved() {
+            match sqp(bracket, frame, Portal::unknown([p, p, q]), planes.best, tilt) {
+                Err(Stop::InDoubt) => {}
+                found => return found,
+            }
+        }
+    }
     match planes.enclose(bracket, &mut p, &mut q)? {
         Some(found) => planes.shrink(bracket, found),
         // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a
         // smooth piece may be found that it runs through.
         None if planes.best.is_known() && frame.is_curved(bracket.body, frame.normal(planes.best.alpha.plane())) => {
-            sqp(bracket, frame, Portal::unknown([p, q, q]), planes.best)
+            sqp(bracket, frame, Portal::unknown([p, q, q]), planes.best, tilt)
         }
         None => Err(Stop::InDoubt),
     }
@@ -86,8 +108,8 @@ impl<V: Vector> Planes<'_, V> {
         Ok(p)
     }
 
-    /// The support point of a plane that is tilted towards `toward`; or, if that is not on that side of the line, the
-    /// one along `toward` itself.
+    /// The support point of a plane that is tilted towards `toward`; or, if that is not on that side of the line, of one
+    /// that is tilted more, and in the end the one along `toward` itself.
     #[inline(always)]
     fn support_toward(
         &mut self,
@@ -95,8 +117,14 @@ impl<V: Vector> Planes<'_, V> {
         plane: RayPlane<V::Scalar>,
         toward: (V::Scalar, V::Scalar),
     ) -> Result<RayPoint<V>, Stop<V>> {
-        let p = self.support(bracket, plane)?;
-        if toward.0 * p.u + toward.1 * p.v > V::Scalar::ZERO {
+        let is_beyond = |p: &RayPoint<V>| dot(toward, p.across()) > V::Scalar::ZERO;
+        let mut p = self.support(bracket, plane)?;
+        while !is_beyond(&p) && self.tilt < Scalar::ONE {
+            let number = V::Scalar::from_f64;
+            self.tilt = (self.tilt * number(8.0)).max(number(OF_FACE));
+            p = self.support(bracket, self.alpha.tilted(toward, self.tilt).plane())?;
+        }
+        if is_beyond(&p) {
             return Ok(p);
         }
         self.tilt = self.tilt.max(Scalar::ONE);
@@ -181,7 +209,7 @@ impl<V: Vector> Planes<'_, V> {
                 return Ok(found);
             }
             if bracket.body.is_curved() && self.frame.is_curved(bracket.body, self.frame.normal(plane)) {
-                return sqp(bracket, self.frame, portal.anticlockwise(weights, high), self.best);
+                return sqp(bracket, self.frame, portal.anticlockwise(weights, high), self.best, self.tilt);
             }
             let before = self.best.tau;
             let r = self.support(bracket, plane)?;
@@ -240,6 +268,22 @@ impl<V: Vector> Triangle<V> {
             if self.turn > Scalar::ZERO { ([p, q, s], [wp, wq, ws]) } else { ([q, p, s], [wq, wp, ws]) };
         Portal { corners, weights, high }
     }
+}
+
+/// The triangle of two points and one that is of the first of one shape and of the second of the other, if it contains
+/// zero: where two edges cross, the line runs through the parallelogram of their ends.
+fn mixed<V: Vector>(frame: &RayFrame<V>, p: &RayPoint<V>, q: &RayPoint<V>) -> Option<Triangle<V>> {
+    let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
+    if frame.radius() > zero {
+        return None;
+    }
+    let area = p.cross(q);
+    let turn = one.copysign(area);
+    [[p, q], [q, p]].into_iter().find_map(|[a, b]| {
+        let s = frame.seen(PointPair { a: a.witness.a, b: b.witness.b });
+        let weights = [area.abs(), q.cross(&s) * turn, s.cross(p) * turn];
+        (weights[1] > zero && weights[2] > zero).then_some(Triangle { corners: [s, *p, *q], weights, turn })
+    })
 }
 
 /// The support point along a vector across the ray, if the plane there does not separate and the point is beyond the
