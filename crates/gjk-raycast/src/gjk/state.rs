@@ -76,7 +76,8 @@ impl<V: Vector> Gjk<V> {
 
     /// Raises the lower bound to the plane through the support point `w` along a direction, if it is higher: no point
     /// of `A − B` lies before `w` along it (the paper's bound `‖v‖² − v·w`, divided by `‖v‖`). How high the plane is,
-    /// if that is finite. Of planes that are equally high the later one is nearer to the best.
+    /// if that is finite. Of planes that are equally high the first
+    /// is kept: the later ones are along shorter vectors, of which more is rounding.
     #[inline(always)]
     pub(super) fn advance(&mut self, Direction { n, length }: Direction<V>, w: V) -> Option<V::Scalar> {
         self.iterations += 1;
@@ -84,7 +85,7 @@ impl<V: Vector> Gjk<V> {
         if !reach.is_finite() {
             return None;
         }
-        if reach >= self.lower {
+        if reach > self.lower {
             (self.lower, self.axis, self.axis_length) = (reach, n, length);
         }
         Some(reach)
@@ -251,17 +252,18 @@ mod tests {
 
     use super::*;
 
-    /// A plane that is lower proves less; of planes that are equally high the later one is kept.
+    /// A plane that is lower proves less; of planes that are equally high the first one is kept.
     #[test]
-    fn only_a_plane_that_is_as_high_raises_the_lower_bound() {
+    fn only_a_higher_plane_raises_the_lower_bound() {
         let mut state = Gjk::new(DVec3::X);
         let along = |n: DVec3| Direction { n, length: n.length() };
         assert_eq!(state.advance(along(DVec3::X * 4.0), DVec3::new(2.0, 0.0, 0.0)), Some(2.0));
         assert_eq!(state.advance(along(DVec3::Y), DVec3::new(0.0, 1.0, 0.0)), Some(1.0));
         assert_eq!((state.lower, state.axis), (2.0, DVec3::X * 4.0));
         let _ = state.advance(along(DVec3::Z), DVec3::new(0.0, 0.0, 2.0));
-        assert_eq!((state.lower, state.axis), (2.0, DVec3::Z));
+        assert_eq!((state.lower, state.axis), (2.0, DVec3::X * 4.0));
         assert_eq!(state.advance(along(DVec3::X), DVec3::NAN), None);
-        assert_eq!((state.lower, state.axis, state.iterations), (2.0, DVec3::Z, 4));
+        let _ = state.advance(along(DVec3::Z), DVec3::new(0.0, 0.0, 2.5));
+        assert_eq!((state.lower, state.axis, state.iterations), (2.5, DVec3::Z, 5));
     }
 }
