@@ -217,7 +217,7 @@ fn judge_path(
         None => Obstacle::Body(robot.placed(count(answer, "other_link")?, count(answer, "other_body")?, &values)?),
     };
     let body = robot.placed(count(answer, "link")?, count(answer, "body")?, &values)?;
-    Ok(proof.of([covered, (met.is_met(body, target, line, reader)?, NOT_MET)]))
+    Ok(proof.of([covered, (met.meets(body, target, line, reader)?, NOT_MET)]))
 }
 
 /// The joint values at a time of an edge, by those at its ends.
@@ -231,7 +231,7 @@ fn values_at([from, to]: [&[f64]; 2], time: f64) -> Vec<Interval> {
 
 impl Obstacle {
     /// Whether it is certainly as near to a body as the target, as the certificate of a line shows.
-    fn is_met(self, body: Body, target: &Interval, line: &Value, reader: &Reader<'_>) -> Result<bool, Unread> {
+    fn meets(self, body: Body, target: &Interval, line: &Value, reader: &Reader<'_>) -> Result<bool, Unread> {
         Ok(match self {
             Self::Body(other) => distance(body, other, field(line, "certificate")?, reader)?.upper.is_at_most(target),
             Self::HalfSpace(normal, offset) => {
@@ -398,7 +398,7 @@ fn judge_box(
         let values: Vec<_> = values.into_iter().map(Interval::from).collect();
         let placed = |link: usize, body| robot.placed(links[link], count(answer, body)?, &values);
         let is_met =
-            is_inside && Obstacle::Body(placed(1, "other_body")?).is_met(placed(0, "body")?, target, line, reader)?;
+            is_inside && Obstacle::Body(placed(1, "other_body")?).meets(placed(0, "body")?, target, line, reader)?;
         return Ok(proof.of([(is_met, NOT_MET)]));
     }
     let covered = boxes.iter().flatten().all(|boxes| is_covered(&whole, &boxes.iter().collect::<Vec<_>>()));
