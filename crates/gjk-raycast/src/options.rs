@@ -317,8 +317,8 @@ impl<V: Vector> RayCastOptions<V> {
     /// which all options are lean has two fifths of the code for rays.
     ///
     /// What is left out is the faster search of [`CastMethod::Portal`], which is then the same as
-    /// [`Gjk`](CastMethod::Gjk) where no closed form is certain: a search takes up to twice the time, and its bracket
-    /// may be wider. Left out, too, is the second look at a source within rounding of the target, and at a hit next to
+    /// [`Gjk`](CastMethod::Gjk) where no closed form is certain: a search takes two to four times as long, and its
+    /// bracket may be wider. Left out, too, is the second look at a source within rounding of the target, and at a hit next to
     /// an edge: the answer may be a hit that is not [certain](crate::RayCast::is_certain), or undecided, where the
     /// default options know.
     #[must_use]
@@ -401,7 +401,7 @@ impl<V: Vector> LinearCastOptions<V> {
     ///
     /// What is left out is the faster search of [`CastMethod::Portal`], as in [`RayCastOptions::lean`], and all looks
     /// at the start beyond that of the cast. Of shapes that touch or overlap there the hit has a point of both, but no
-    /// normal, and is certain only where the cast itself knows it to be. With [`StartInContact::IfDeeper`] shapes that
+    /// normal, and it is certain only where the search happens to end with points of both around the start. With [`StartInContact::IfDeeper`] shapes that
     /// may be in contact at the start are [undecided](crate::Outcome::Undecided).
     #[must_use]
     pub fn lean() -> Self {

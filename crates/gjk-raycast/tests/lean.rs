@@ -99,7 +99,7 @@ fn rays<V: Vector>() {
 /// Casts of shapes that are apart are those of Algorithm 3; of shapes in contact at the start less is known.
 fn linear_casts<V: Vector>() {
     let mut random = Random(4);
-    let zero = V::Scalar::ZERO;
+    let (zero, mut certain) = (V::Scalar::ZERO, 0);
     for kind in 0..PAIRS {
         let gap = [random.number(0.1, 2.0), random.number(-0.2, -0.1), random.number(-30.0, 30.0) * ulps::<V>(1.0)];
         let [a, b] = pair::<V>(&mut random, kind, gap[kind % 3]);
@@ -109,14 +109,17 @@ fn linear_casts<V: Vector>() {
         let (full, lean) = (cast(LinearCastOptions::default()), cast(LinearCastOptions::lean()));
         agree([lean.lower, lean.upper], [full.lower, full.upper], (kind, lean, full));
         // Neither contradicts what the other is certain of.
-        assert!(!(lean.is_certain() && full.outcome.is_miss()), "{kind}: {lean:?}, {full:?}");
-        assert!(!(full.is_certain() && lean.outcome.is_miss()), "{kind}: {lean:?}, {full:?}");
+        for (one, other) in [(lean, full), (full, lean)] {
+            let contradicts = one.outcome.is_hit() && one.is_certain() && other.outcome.is_miss();
+            assert!(!contradicts, "{kind}: {lean:?}, {full:?}");
+        }
         if kind % 3 == 0 && ![a.core(), b.core()].iter().any(|core| core.extent == zero) {
             assert_eq!(lean, cast(LinearCastOptions::default().with_method(CastMethod::Gjk)), "{kind}");
         }
         if kind % 3 == 1 {
             let Outcome::Hit(hit) = lean.outcome else { panic!("{kind}: {lean:?}") };
             assert_eq!((hit.time, lean.lower), (zero, zero), "{kind}");
+            certain += usize::from(lean.is_certain());
             for body in [&a, &b] {
                 let there = distance(body, &Point::new(hit.point).expect("finite"), DistanceOptions::default());
                 assert!(there.distance <= s::<V>(ulps::<V>(64.0)), "{kind}: {there:?}");
@@ -125,6 +128,8 @@ fn linear_casts<V: Vector>() {
             assert_eq!(cast(deeper).outcome, Outcome::Undecided, "nobody looks how deep they are");
         }
     }
+    // Often the simplex that the search ends with has the start inside, which is a proof.
+    assert!(certain >= PAIRS / 10, "{certain}");
 }
 
 #[test]

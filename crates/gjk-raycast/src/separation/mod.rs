@@ -33,6 +33,7 @@ use cores::{ClosedForm, slack};
 pub(crate) use cores::{Cores, Uncertainty};
 pub(crate) use direct::direct;
 use expansion::{Expanded, expand};
+pub(crate) use faces::is_around_zero;
 use met::MetPoint;
 pub(crate) use near_contact::{NearContact, is_near_contact, near_contact_of};
 pub(crate) use room::{FromContact, across_corners, look_after};

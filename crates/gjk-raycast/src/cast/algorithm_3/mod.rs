@@ -19,6 +19,7 @@ use convex_support::{Scalar, Vector};
 use super::bracket::Bracket;
 use super::{RayContact, Stop};
 use crate::gjk::Progress;
+use crate::separation::is_around_zero;
 use crate::simplex::{Closest, MAX_POINTS, Simplex, project};
 use refine::refine;
 use swept_simplex::{Entry, entry};
@@ -87,8 +88,12 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
         if length - bracket.radius <= bracket.noise {
             // x is in the body, or no farther from it than rounding.
             simplex.retain(face, weights);
-            let contact = bracket.close_at_low(to_x, simplex.weighted_witness());
-            return contact.map(Approached::Touches).ok_or(Stop::InDoubt);
+            let contact = bracket.close_at_low(to_x, simplex.weighted_witness()).ok_or(Stop::InDoubt)?;
+            // Mostly a second look tells more of it.
+            if bracket.options.extra.get().is_none() && is_inside(bracket, simplex, x) {
+                bracket.enter_for_certain(contact.mu);
+            }
+            return Ok(Approached::Touches(contact));
         }
         let slope = to_x.dot(line.direction) / length;
         let progress = nearing.goes_on(length);
@@ -117,6 +122,18 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
         n = v / length;
         beside = Some(n);
     }
+}
+
+/// Whether a point of the line is in the body by more than what that and the simplex are wrong by: within the radius
+/// around the simplex, or within a simplex of full dimension.
+fn is_inside<V: Vector>(bracket: &Bracket<'_, V>, simplex: &Simplex<V>, x: V) -> bool {
+    let wrong = (bracket.error + bracket.noise) * Scalar::from_f64(2.0);
+    let mut seen = [V::ZERO; MAX_POINTS];
+    for (s, p) in seen.iter_mut().zip(simplex.points()) {
+        *s = *p - x;
+    }
+    let is_in_round = (simplex.weighted_point() - x).norm() + wrong < bracket.radius;
+    is_in_round || is_around_zero(&seen[..simplex.points().len()], wrong)
 }
 
 /// The contact where the line enters the round of a swept simplex no deeper than errors may have brought it: planes at
