@@ -317,10 +317,10 @@ impl<V: Vector> RayCastOptions<V> {
     /// which all options are lean has two fifths of the code for rays.
     ///
     /// What is left out is the faster search of [`CastMethod::Portal`], which is then the same as
-    /// [`Gjk`](CastMethod::Gjk) where no closed form is certain: a search takes two to four times as long, and its
-    /// bracket may be wider. Left out, too, is the second look at a source within rounding of the target, and at a hit next to
-    /// an edge: the answer may be a hit that is not [certain](crate::RayCast::is_certain), or undecided, where the
-    /// default options know.
+    /// [`Gjk`](CastMethod::Gjk) where no closed form is certain: a search takes two to five times as long, and its
+    /// bracket may be wider. Left out, too, is the second look at a source within rounding of the target, and at a hit
+    /// next to an edge or a graze. There the answer may be a hit that is not
+    /// [certain](crate::RayCast::is_certain), or undecided, where the default options know.
     #[must_use]
     pub fn lean() -> Self {
         Self {

@@ -16,8 +16,9 @@ use num_traits::Float as _;
 use crate::body::{CastBody, PointPair};
 use crate::extra::in_static;
 use crate::observer::Observer;
+use crate::simplex::Simplex;
 use crate::{CastMethod, Miss, Outcome, Ray, RayCastOptions, Status};
-use algorithm_3::algorithm_3;
+use algorithm_3::{algorithm_3, touch_beside};
 use bracket::Bracket;
 use certain::at_certain_entry;
 pub(crate) use certain::{certain, certain_closely, is_plain, show};
@@ -31,6 +32,7 @@ pub(crate) use start::{RayOf, settle_start};
 pub(crate) struct Quicker<V: Vector> {
     cast: CastFn<V>,
     settle: SettleFn<V>,
+    touch_beside: fn(&mut Bracket<'_, V>, &Simplex<V>, V, V::Scalar, Option<V>) -> Option<RayContact<V>>,
 }
 
 type CastFn<V> = fn(
@@ -43,7 +45,7 @@ type CastFn<V> = fn(
 ) -> Cast<V>;
 
 impl<V: Vector> Quicker<V> {
-    pub(crate) const TABLE: Self = Self { cast: cast_by::<V, true>, settle: start::settle };
+    pub(crate) const TABLE: Self = Self { cast: cast_by::<V, true>, settle: start::settle, touch_beside };
 }
 
 in_static!(Quicker);

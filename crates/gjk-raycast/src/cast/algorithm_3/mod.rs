@@ -112,7 +112,7 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
         let within = if progress { bracket.noise } else { bracket.noise + bracket.error };
         if length - bracket.radius <= within {
             // With the slope of a plane ahead the ray may be past the simplex.
-            let contact = if slope < Scalar::ZERO { touch_beside(bracket, simplex, v, within, beside) } else { None };
+            let contact = if slope < Scalar::ZERO { look_beside(bracket, simplex, v, within, beside) } else { None };
             return contact.map(Approached::Touches).ok_or(Stop::InDoubt);
         }
         if !progress {
@@ -141,7 +141,7 @@ fn is_inside<V: Vector>(bracket: &Bracket<'_, V>, simplex: &Simplex<V>, x: V) ->
 fn graze<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -> Option<RayContact<V>> {
     let (v, within) = (aside(bracket, simplex).ok()?, bracket.noise + bracket.error);
     let is_graze = bracket.radius > within && bracket.radius - v.norm() <= within;
-    if is_graze { touch_beside(bracket, simplex, v, within, None) } else { None }
+    if is_graze { look_beside(bracket, simplex, v, within, None) } else { None }
 }
 
 /// The shortest vector from the simplex to the line, whose face and weights the simplex is left with.
@@ -154,8 +154,19 @@ fn aside<V: Vector>(bracket: &Bracket<'_, V>, simplex: &mut Simplex<V>) -> Resul
     Ok(line.across(v))
 }
 
+/// As [`touch_beside`], if the options name that.
+fn look_beside<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    simplex: &Simplex<V>,
+    v: V,
+    within: V::Scalar,
+    normal: Option<V>,
+) -> Option<RayContact<V>> {
+    (bracket.options.extra.get()?.touch_beside)(bracket, simplex, v, within, normal)
+}
+
 /// The contact where the line comes within rounding of the simplex without entering it ahead of x.
-fn touch_beside<V: Vector>(
+pub(super) fn touch_beside<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     simplex: &Simplex<V>,
     v: V,
