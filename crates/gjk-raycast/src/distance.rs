@@ -86,12 +86,12 @@ compiled_once! {
         options: DistanceOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> Distance<V> {
-        let DistanceOptions { tolerance, limit, max_iterations, axis, sub_algorithm } = options;
+        let DistanceOptions { tolerance, limit, max_iterations, axis, sub_algorithm, extra } = options;
         let axis = axis.map(|axis| if is_swapped { -axis } else { axis });
         let of_separation = SignedDistanceOptions { limit, max_iterations, axis, ..SignedDistanceOptions::new() };
-        let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation) };
+        let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation, extra) };
         let mut cores = Cores::new(shapes, cores);
-        let found = observer.of_swapped(is_swapped, |observer| separation(&mut cores, &wanted, observer));
+        let found = observer.of_swapped(is_swapped, |observer| separation::<_, false>(&mut cores, &wanted, observer));
         let answer = found.distance(&cores);
         if is_swapped { answer.reversed() } else { answer }
     }

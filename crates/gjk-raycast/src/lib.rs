@@ -139,6 +139,7 @@ mod distance;
 mod distances;
 mod double;
 mod error;
+mod extra;
 mod free_step;
 mod gjk;
 mod half_space;

@@ -5,10 +5,11 @@ use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
-use crate::cast::{Cast, CastHit, Part, cast, certain_closely, settle_start};
+use crate::cast::{Cast, CastHit, Part, Quicker, RayOf, cast, certain_closely, settle_start};
+use crate::extra::in_static;
 use crate::observer::Observer;
 use crate::shape::Shape;
-use crate::start_in_contact::StartingPair;
+use crate::start_in_contact::{InContact, StartingPair};
 use crate::{
     Iterate, LinearCast, LinearCastOptions, LinearHit, Miss, Motion, Outcome, Ray, RayCastError, RayCastOptions,
     StartInContact, Status, WarmStart,
@@ -113,15 +114,47 @@ where
 {
     motion.check(&options)?;
     let target = options.target_distance.max(<A::Vector as Vector>::Scalar::ZERO);
-    let shapes = Both::<_, _, true>::new(a, b);
-    let mut body = Pair::new(&shapes).swept(target);
-    let cores = [body.core_a, body.core_b];
-    Ok(by_search(&mut body, shapes.each(), cores, motion, &options, observer))
+    Ok(as_body(a, b, target, |body, shapes, cores| by_search(body, shapes, cores, motion, &options, observer)))
 }
+
+/// What a search asks of two shapes, one of them swept by a ball.
+#[inline(always)]
+pub(crate) fn as_body<A, B, R>(
+    a: &A,
+    b: &B,
+    target_distance: <A::Vector as Vector>::Scalar,
+    search: impl FnOnce(&mut dyn CastBody<Vector = A::Vector>, [Shape<'_, A::Vector>; 2], [Core<A::Vector>; 2]) -> R,
+) -> R
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let shapes = Both::<_, _, true>::new(a, b);
+    let mut body = Pair::new(&shapes).swept(target_distance);
+    let cores = [body.core_a, body.core_b];
+    search(&mut body, shapes.each(), cores)
+}
+
+/// How shapes that touch at the start are known, beside what the cast itself knows of them.
+pub(crate) struct AtStart<V: Vector> {
+    rays: &'static Quicker<V>,
+    touch: fn(&mut LinearCast<V>, &StartingPair<'_, V>, &LinearCastOptions<V>),
+    of_motion: fn(&StartingPair<'_, V>, Motion<V>, &LinearCastOptions<V>, V::Scalar) -> Option<InContact<V>>,
+}
+
+impl<V: Vector> AtStart<V> {
+    pub(crate) const TABLE: Self = Self {
+        rays: &Quicker::TABLE,
+        touch: touch_at_start,
+        of_motion: |start, motion, options, slack| start.of_motion(motion, options, slack),
+    };
+}
+
+in_static!(AtStart);
 
 compiled_once! {
     /// The cast of a pair of shapes that have these cores, by a search.
-    fn by_search<V>(
+    pub(crate) fn by_search<V>(
         body: &mut dyn CastBody<Vector = V>,
         shapes: [Shape<'_, V>; 2],
         cores: [Core<V>; 2],
@@ -149,7 +182,7 @@ fn searched<V: Vector>(
         return answer(&Cast::of_certain(&known, body, ray), [a, b], cores, motion, options);
     }
     let mut cast = cast(body, ray, direction_error, Part::Whole, &wanted, observer);
-    settle_start(&mut cast, a, options.target_distance.max(Scalar::ZERO), || Some(b), ray.direction, &wanted);
+    settle_start(&mut cast, a, options.target_distance.max(Scalar::ZERO), RayOf::Shape(b), ray.direction, &wanted);
     answer(&cast, [a, b], cores, motion, options)
 }
 
@@ -176,32 +209,18 @@ fn answer<V: Vector>(
     }
     let start = StartingPair { a, b, target };
     answer.outcome = match &cast.outcome {
-        Outcome::Hit(hit) if hit.normal.is_some() || hit.lambda != zero => {
-            Outcome::Hit(hit_on_the_way(hit, cast.scale, [core_a, core_b], motion.velocity_b))
-        }
-        // Where only deeper motions count, what is replaced below.
-        Outcome::Hit(_) if options.start_in_contact == StartInContact::IfDeeper => {
-            Outcome::Hit(LinearHit { time: zero, point: core_b.origin, normal: None })
-        }
-        Outcome::Hit(_) => {
-            // The cast knows where the motion enters, which is behind the start or, sliding, ahead of it.
-            let left = |taken: usize| LinearCastOptions {
-                max_iterations: options.max_iterations.saturating_sub(taken),
-                ..*options
-            };
-            let at_start = start.distance(&left(answer.iterations));
-            answer.iterations += at_start.iterations;
-            let (normal, iterations) = start.touching_normal(&left(answer.iterations));
-            answer.iterations += iterations;
-            if normal.is_none() {
-                // They are certainly deeper than touching, whatever the motion.
-                answer.upper = zero;
-            }
-            Outcome::Hit(LinearHit { time: zero, point: at_start.point_b, normal })
-        }
+        Outcome::Hit(hit) => Outcome::Hit(hit_on_the_way(hit, cast.scale, [core_a, core_b], motion.velocity_b)),
         Outcome::Miss(miss) => Outcome::Miss(Miss { axis: -miss.axis }),
         Outcome::Undecided => Outcome::Undecided,
     };
+    // Where only deeper motions count, what is known of the start is looked for below.
+    if let Outcome::Hit(LinearHit { time, normal: None, .. }) = answer.outcome
+        && time == zero
+        && options.start_in_contact == StartInContact::Report
+        && let Some(extra) = options.extra.get()
+    {
+        (extra.touch)(&mut answer, &start, options);
+    }
     if options.start_in_contact == StartInContact::IfDeeper {
         let sizes = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
         let far = core_a.origin.norm() + core_b.origin.norm();
@@ -214,6 +233,25 @@ fn answer<V: Vector>(
     answer
 }
 
+/// Looks at shapes that are in contact at the start: the cast knows where the motion enters, which is behind the start
+/// or, sliding, ahead of it.
+#[cold]
+#[inline(never)]
+fn touch_at_start<V: Vector>(answer: &mut LinearCast<V>, start: &StartingPair<'_, V>, options: &LinearCastOptions<V>) {
+    let zero = V::Scalar::ZERO;
+    let left =
+        |taken: usize| LinearCastOptions { max_iterations: options.max_iterations.saturating_sub(taken), ..*options };
+    let at_start = start.distance(&left(answer.iterations));
+    answer.iterations += at_start.iterations;
+    let (normal, iterations) = start.touching_normal(&left(answer.iterations));
+    answer.iterations += iterations;
+    if normal.is_none() {
+        // They are certainly deeper than touching, whatever the motion.
+        answer.upper = zero;
+    }
+    answer.outcome = Outcome::Hit(LinearHit { time: zero, point: at_start.point_b, normal });
+}
+
 /// The ray that `b` draws as it is seen from `a`, what its direction is wrong by as a part of its length, and what is
 /// asked of it.
 #[inline(always)]
@@ -223,7 +261,7 @@ fn ray_of<V: Vector>(
     options: &LinearCastOptions<V>,
 ) -> (Ray<V>, V::Scalar, RayCastOptions<V>) {
     let zero = V::Scalar::ZERO;
-    let mut wanted = RayCastOptions::new()
+    let mut wanted = RayCastOptions::lean()
         .with_max_lambda(options.max_time)
         .with_tolerance(options.tolerance)
         .with_max_iterations(options.max_iterations)
@@ -231,6 +269,7 @@ fn ray_of<V: Vector>(
         .with_method(options.method);
     // Seen from b, a is at the outside of the obstacle: normals of A − B point out of a.
     wanted.warm_start = options.warm_start.map(WarmStart::reversed);
+    wanted.extra = options.extra.part(|extra| extra.rays);
     // The ray starts at zero, where both shapes are in place: at b's origin, seen from a's.
     let mut ray = Ray { source: origin_b, direction: motion.velocity_b - motion.velocity_a };
     if ray.direction == V::ZERO {
@@ -288,13 +327,18 @@ fn only_if_deeper<V: Vector>(
     if !may_begin_in_contact {
         return;
     }
-    let Some(contact) = start.of_motion(motion, options, slack) else { return };
-    if !(slack < infinity && contact.start.upper < infinity) {
-        // Of numbers out of range nothing is known.
+    let contact = match options.extra.get().map(|extra| (extra.of_motion)(start, motion, options, slack)) {
+        // They are apart.
+        Some(None) => return,
+        Some(contact) => contact.filter(|contact| slack < infinity && contact.start.upper < infinity),
+        None => None,
+    };
+    let Some(contact) = contact else {
+        // Of numbers out of range nothing is known, nor without a look at the start.
         (answer.outcome, answer.status) = (Outcome::Undecided, Status::Stalled);
         (answer.lower, answer.upper) = (zero, infinity);
         return;
-    }
+    };
     answer.iterations += contact.start.iterations;
     let is_hit_at_start = matches!(answer.outcome, Outcome::Hit(LinearHit { time, .. }) if time == zero);
     if let Some(axis) = contact.leaves_along {

@@ -3,6 +3,10 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use crate::cast::Quicker;
+use crate::extra::Extra;
+use crate::linear_cast::AtStart;
+use crate::separation::Closer;
 use crate::{SubAlgorithm, WarmStart};
 
 /// Iterations after which a query gives up. Polytopes and smooth shapes need a dozen; the cap only bounds the time
@@ -126,18 +130,33 @@ pub struct DistanceOptions<V: Vector> {
     pub axis: Option<V>,
     /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
     pub sub_algorithm: SubAlgorithm,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) extra: Extra<Closer<V>>,
 }
 
 impl<V: Vector> DistanceOptions<V> {
     /// The default options.
     #[must_use]
     pub fn new() -> Self {
+        Self { extra: Closer::named(), ..Self::lean() }
+    }
+
+    /// The default options, naming no more machine code than GJK: a program in which all options are lean has a quarter
+    /// of the code for distances.
+    ///
+    /// What is left out is the closer look at bodies that are apart, or in one another, by no more than a few roundings
+    /// of their sizes. There the bracket is as wide as the errors of the largest number in the query, bodies that are
+    /// certainly apart by less may count as touching, and what GJK alone does not decide is
+    /// [`Status::Stalled`](crate::Status::Stalled). All other answers are the same to the last bit.
+    #[must_use]
+    pub fn lean() -> Self {
         Self {
             tolerance: V::Scalar::ZERO,
             limit: V::Scalar::infinity(),
             max_iterations: MAX_ITERATIONS,
             axis: None,
             sub_algorithm: SubAlgorithm::Regions,
+            extra: Extra::NONE,
         }
     }
 
@@ -297,12 +316,27 @@ pub struct RayCastOptions<V: Vector> {
     pub sub_algorithm: SubAlgorithm,
     /// How planes are found. Default: [`CastMethod::Portal`].
     pub method: CastMethod,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) extra: Extra<Quicker<V>>,
 }
 
 impl<V: Vector> RayCastOptions<V> {
     /// The default options.
     #[must_use]
     pub fn new() -> Self {
+        Self { extra: Quicker::named(), ..Self::lean() }
+    }
+
+    /// The default options, naming no more machine code than the closed forms of the shape and Algorithm 3: a program in
+    /// which all options are lean has two fifths of the code for rays.
+    ///
+    /// What is left out is the faster search of [`CastMethod::Portal`], which is then the same as
+    /// [`Gjk`](CastMethod::Gjk) where no closed form is certain: a search takes two to five times as long, and its
+    /// bracket may be wider. Left out, too, is the second look at a source within rounding of the target, and at a hit
+    /// next to an edge or a graze. There the answer may be a hit that is not
+    /// [certain](crate::RayCast::is_certain), or undecided, where the default options know.
+    #[must_use]
+    pub fn lean() -> Self {
         Self {
             min_lambda: V::Scalar::ZERO,
             max_lambda: V::Scalar::infinity(),
@@ -311,6 +345,7 @@ impl<V: Vector> RayCastOptions<V> {
             warm_start: None,
             sub_algorithm: SubAlgorithm::Regions,
             method: CastMethod::Portal,
+            extra: Extra::NONE,
         }
     }
 
@@ -364,12 +399,26 @@ pub struct LinearCastOptions<V: Vector> {
     pub sub_algorithm: SubAlgorithm,
     /// How planes are found. Default: [`CastMethod::Portal`].
     pub method: CastMethod,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) extra: Extra<AtStart<V>>,
 }
 
 impl<V: Vector> LinearCastOptions<V> {
     /// The default options.
     #[must_use]
     pub fn new() -> Self {
+        Self { extra: AtStart::named(), ..Self::lean() }
+    }
+
+    /// The default options, naming no more machine code than Algorithm 3 and the closed forms for points and balls: a
+    /// program in which all options are lean has three tenths of the code for linear casts.
+    ///
+    /// What is left out is the faster search of [`CastMethod::Portal`], as in [`RayCastOptions::lean`], and all looks
+    /// at the start beyond that of the cast. Of shapes that touch or overlap there the hit has a point of both, but no
+    /// normal, and it is certain only where the search happens to end with points of both around the start. With [`StartInContact::IfDeeper`] shapes that
+    /// may be in contact at the start are [undecided](crate::Outcome::Undecided).
+    #[must_use]
+    pub fn lean() -> Self {
         Self {
             max_time: V::Scalar::infinity(),
             target_distance: V::Scalar::ZERO,
@@ -379,6 +428,7 @@ impl<V: Vector> LinearCastOptions<V> {
             warm_start: None,
             sub_algorithm: SubAlgorithm::Regions,
             method: CastMethod::Portal,
+            extra: Extra::NONE,
         }
     }
 

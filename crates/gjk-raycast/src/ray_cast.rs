@@ -1,10 +1,10 @@
 //! Where a ray enters a shape: the paper's question, answered by a closed form, by a portal or by its Algorithm 3.
 
-use convex_support::{LineQuery, Point, Scalar, SupportMap, Vector, compiled_once};
+use convex_support::{LineQuery, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
 use crate::body::{CastBody, Measures, Single};
-use crate::cast::{Cast, CastHit, LocalRay, Part, cast, certain, certain_closely, is_plain, settle_start, show};
+use crate::cast::{Cast, CastHit, LocalRay, Part, RayOf, cast, certain, certain_closely, is_plain, settle_start, show};
 use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::power_of_two_near;
@@ -125,7 +125,7 @@ compiled_once! {
             return late(body, ray, *options, observer);
         }
         let mut cast = cast(body, ray, Scalar::ZERO, Part::Whole, options, observer);
-        settle_start(&mut cast, shape, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, options);
+        settle_start(&mut cast, shape, Scalar::ZERO, RayOf::Point(ray.source), ray.direction, options);
         answer(cast, ray)
     }
 }

@@ -3,8 +3,9 @@
 use convex_support::{Core, SupportMap, Vector, compiled_once};
 
 use crate::body::{Both, Shapes};
+use crate::extra::Extra;
 use crate::observer::Observer;
-use crate::separation::{Cores, OfOverlap, Wanted, direct, separation};
+use crate::separation::{Closer, Cores, OfOverlap, Wanted, direct, separation};
 use crate::shape::Shape;
 use crate::{Iterate, SignedDistance, SignedDistanceOptions};
 
@@ -86,9 +87,9 @@ compiled_once! {
         observer: &mut Observer<'_, V>,
     ) -> SignedDistance<V> {
         let axis = options.axis.map(|axis| if is_swapped { -axis } else { axis });
-        let wanted = Wanted::new(OfOverlap::Depth, SignedDistanceOptions { axis, ..options });
+        let wanted = Wanted::new(OfOverlap::Depth, SignedDistanceOptions { axis, ..options }, Closer::named());
         let mut cores = Cores::new(shapes, cores);
-        let found = observer.of_swapped(is_swapped, |observer| separation(&mut cores, &wanted, observer));
+        let found = observer.of_swapped(is_swapped, |observer| separation::<_, true>(&mut cores, &wanted, observer));
         let answer = found.signed_distance(&cores);
         if is_swapped { answer.reversed() } else { answer }
     }
@@ -100,13 +101,13 @@ compiled_once! {
 pub(crate) fn rough_signed_distance<V: Vector>(
     shapes: &dyn Shapes<Vector = V>,
     options: SignedDistanceOptions<V>,
+    extra: Extra<Closer<V>>,
 ) -> SignedDistance<V> {
     let parts = shapes.cores();
     direct(shapes, parts, options.max_iterations, &mut Observer::none()).unwrap_or_else(|| {
         let mut cores = Cores::new(shapes, parts);
-        let wanted = Wanted::new(OfOverlap::RoughDepth, options);
-        let found = separation(&mut cores, &wanted, &mut Observer::none());
-        SignedDistance { normal: found.axis, ..found.signed_distance(&cores) }
+        let wanted = Wanted::new(OfOverlap::RoughDepth, options, extra);
+        separation::<_, true>(&mut cores, &wanted, &mut Observer::none()).signed_distance(&cores)
     })
 }
 

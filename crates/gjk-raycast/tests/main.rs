@@ -30,6 +30,7 @@ mod half_space;
 mod half_space_motion;
 mod hit_derivatives;
 mod invariances;
+mod lean;
 mod lies;
 mod linkage;
 mod motion_cast;

@@ -26,7 +26,7 @@ pub(crate) fn capsule<V: Vector>(line: LineQuery<V>, origin: V, half_height: V::
     let outward = |at: V| (at - at.max(-end).min(end)).unit().unwrap_or(-line.direction);
     let crossed = |source, direction| Spine::upright(half_height).crossing(radius, source, direction);
     let reach = |axis: V| half_height * axis.get(1).abs();
-    let solid = |f: InUnits<'_, V>| Solid::Capsule { half_height: f(half_height), radius: f(radius) };
+    let solid = |f: InUnits<'_, V>| Solid::upright(CloseLine::capsule, f(half_height), f(radius));
     closely(line, origin, half_height + radius, solid, outward, crossed, reach)
 }
 
@@ -42,7 +42,8 @@ pub(crate) fn cuboid<V: Vector>(line: LineQuery<V>, half_extents: V) -> Option<C
         let excess = if is_swept { at - at.max(-half_extents).min(half_extents) } else { face };
         excess.unit().unwrap_or(face)
     };
-    let solid = |f: InUnits<'_, V>| Solid::RoundedBox {
+    let solid = |f: InUnits<'_, V>| Solid {
+        union: CloseLine::rounded_box,
         half_extents: core::array::from_fn(|i| if i < V::DIM { f(half_extents.get(i)) } else { f64::INFINITY }),
         radius: f(radius),
     };
@@ -72,7 +73,7 @@ pub(crate) fn cone<V: Vector3>(line: LineQuery<V>, shape: &Cone<V>) -> Option<Ce
         if -half_height - at.get(1) > beyond_slant { -V::axis(1) } else { out * cosine + V::axis(1) * sine }
     };
     let crossed = |source, direction| super::cone(shape, source, direction);
-    let solid = |f: InUnits<'_, V>| Solid::Cone { half_height: f(half_height), radius: f(radius) };
+    let solid = |f: InUnits<'_, V>| Solid::upright(CloseLine::cone, f(half_height), f(radius));
     closely(line, V::ZERO, shape.core().extent, solid, outward, crossed, |axis| cone_reach(shape, axis))
 }
 
@@ -91,7 +92,7 @@ pub(crate) fn cylinder<V: Vector3>(
     };
     let crossed = |source, direction| super::cylinder(half_height, radius, source, direction);
     let reach = |axis: V| half_height * axis.get(1).abs() + radius * across(axis).length();
-    let solid = |f: InUnits<'_, V>| Solid::Cylinder { half_height: f(half_height), radius: f(radius) };
+    let solid = |f: InUnits<'_, V>| Solid::upright(CloseLine::cylinder, f(half_height), f(radius));
     closely(line, V::ZERO, hypot(half_height, radius), solid, outward, crossed, reach)
 }
 
@@ -134,25 +135,20 @@ fn closely<V: Vector>(
 }
 
 /// A shape about zero, in units of about its size; upright ones are about the second axis.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Solid {
-    Capsule {
-        half_height: f64,
-        radius: f64,
-    },
-    Cylinder {
-        half_height: f64,
-        radius: f64,
-    },
-    Cone {
-        half_height: f64,
-        radius: f64,
-    },
-    /// The half extents beyond the dimension are infinite.
-    RoundedBox {
-        half_extents: [f64; 3],
-        radius: f64,
-    },
+#[derive(Clone, Copy)]
+pub(super) struct Solid {
+    /// The first entry of a line into its pieces, as they are when it is made larger by a length, or smaller if that is
+    /// negative. A pointer, so that a program has the pieces of its own shapes alone.
+    union: fn(&CloseLine, &Self, f64) -> First,
+    /// Those of a box beyond the dimension are infinite; of an upright shape the second one is half the height.
+    half_extents: [f64; 3],
+    radius: f64,
+}
+
+impl Solid {
+    fn upright(union: fn(&CloseLine, &Self, f64) -> First, half_height: f64, radius: f64) -> Self {
+        Self { union, half_extents: [0.0, half_height, 0.0], radius }
+    }
 }
 
 /// A line: its source as it is seen from the shape's origin, exactly, and its direction.
@@ -173,8 +169,9 @@ pub(super) enum Known {
 impl CloseLine {
     /// What is certain of every line that passes within `error` near the shape.
     pub(super) fn crossing(&self, solid: Solid, error: f64) -> Option<Known> {
-        let larger = self.union(solid, error);
-        let smaller = if error > 0.0 { self.union(solid, -error) } else { larger };
+        let union = |by| (solid.union)(self, &solid, by);
+        let larger = union(error);
+        let smaller = if error > 0.0 { union(-error) } else { larger };
         if larger.earliest == f64::INFINITY {
             return Some(Known::Misses);
         }
@@ -183,27 +180,21 @@ impl CloseLine {
         is_known.then_some(Known::Enters([larger.earliest, smaller.latest]))
     }
 
-    /// The first entry into the pieces of a shape that is made larger by `by`, or smaller if that is negative.
-    fn union(&self, solid: Solid, by: f64) -> First {
-        let mut first = First { earliest: f64::INFINITY, latest: f64::INFINITY };
-        match solid {
-            Solid::Cylinder { half_height, radius } => {
-                let radius = Bounded::sum(radius, by);
-                first.take(self.slab(1, Bounded::sum(half_height, by)).and(self.disc(
-                    [true, false, true],
-                    [0.0; 3],
-                    radius,
-                )));
-            }
-            Solid::Capsule { half_height, radius } => {
-                let radius = Bounded::sum(radius, by);
-                first.take(self.slab(1, half_height.into()).and(self.disc([true, false, true], [0.0; 3], radius)));
-                for end in [half_height, -half_height] {
-                    first.take(self.disc([true; 3], [0.0, end, 0.0], radius));
-                }
-            }
-            Solid::Cone { half_height, radius } => first.take(self.cone(half_height, radius, by)),
-            Solid::RoundedBox { half_extents, radius } => self.rounded_box(half_extents, radius, by, &mut first),
+    fn cylinder(&self, solid: &Solid, by: f64) -> First {
+        let Solid { half_extents: [_, half_height, _], radius, .. } = *solid;
+        let mut first = First::NONE;
+        let disc = self.disc([true, false, true], [0.0; 3], Bounded::sum(radius, by));
+        first.take(self.slab(1, Bounded::sum(half_height, by)).and(disc));
+        first
+    }
+
+    fn capsule(&self, solid: &Solid, by: f64) -> First {
+        let Solid { half_extents: [_, half_height, _], radius, .. } = *solid;
+        let mut first = First::NONE;
+        let radius = Bounded::sum(radius, by);
+        first.take(self.slab(1, half_height.into()).and(self.disc([true, false, true], [0.0; 3], radius)));
+        for end in [half_height, -half_height] {
+            first.take(self.disc([true; 3], [0.0, end, 0.0], radius));
         }
         first
     }
@@ -249,7 +240,8 @@ impl CloseLine {
 
     /// The cone is behind its base and below its apex, where `4h²·(x² + z²) ≤ r²·(h − y)²`. Each of its planes is
     /// moved by `by`: the base by that, and the apex by `by/sinα`, with `α` half the opening angle.
-    fn cone(&self, half_height: f64, radius: f64, by: f64) -> Stretch {
+    fn cone(&self, solid: &Solid, by: f64) -> First {
+        let Solid { half_extents: [_, half_height, _], radius, .. } = *solid;
         let height = half_height + half_height;
         let lift = if by == 0.0 { 0.0 } else { by * hypot(height / radius, 1.0) };
         // The product and the length are wrong by a few roundings.
@@ -275,12 +267,16 @@ impl CloseLine {
             }
             Quadric::Outside { low, .. } => Stretch { enters: [f64::NEG_INFINITY; 2], leaves: low },
         };
-        slant.and(self.between(1, base, apex))
+        let mut first = First::NONE;
+        first.take(slant.and(self.between(1, base, apex)));
+        first
     }
 
     /// A box swept by a ball: the boxes that are longer by the radius along one axis, the edges swept by a ball, and
     /// the balls about the corners. A box that is swept by none is made larger, or smaller, itself.
-    fn rounded_box(&self, half_extents: [f64; 3], radius: f64, by: f64, first: &mut First) {
+    fn rounded_box(&self, solid: &Solid, by: f64) -> First {
+        let Solid { half_extents, radius, .. } = *solid;
+        let mut first = First::NONE;
         let is_swept = radius > 0.0;
         let radius = Bounded::sum(radius, by);
         let axes = || (0..3).filter(|&i| half_extents[i] < f64::INFINITY);
@@ -296,7 +292,7 @@ impl CloseLine {
             };
             first.take(axes().fold(Stretch::EVERYWHERE, |all, i| all.and(self.slab(i, half(i)))));
             if !is_swept {
-                return;
+                return first;
             }
         }
         // Of each axis the lower end, the upper end, or what is between.
@@ -311,6 +307,7 @@ impl CloseLine {
             let between = axes().filter(|&i| !is_meant[i]).map(|i| self.slab(i, half_extents[i].into()));
             first.take(between.fold(self.disc(is_meant, centre, radius), Stretch::and));
         }
+        first
     }
 }
 
@@ -345,6 +342,8 @@ struct First {
 }
 
 impl First {
+    const NONE: Self = Self { earliest: f64::INFINITY, latest: f64::INFINITY };
+
     fn take(&mut self, Stretch { enters, leaves }: Stretch) {
         if enters[0] <= leaves[1] {
             self.earliest = self.earliest.min(enters[0]);

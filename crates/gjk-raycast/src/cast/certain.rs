@@ -76,8 +76,8 @@ pub(crate) fn certain_closely<B: CastBody + ?Sized>(
     }
     // Of a ray that begins inside, plain numbers tell where its line enters, and a closer look takes longer than a
     // search.
-    let closely = || body.certain_crossing(LineQuery { is_close: true, ..line });
-    let answer = certain(body.certain_crossing(line).or_else(closely)?, ray, options)?;
+    let known = [false, true].into_iter().find_map(|is_close| body.certain_crossing(LineQuery { is_close, ..line }));
+    let answer = certain(known?, ray, options)?;
     show(&answer, body, ray, observer);
     Some(answer)
 }

@@ -14,21 +14,60 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::body::{CastBody, PointPair};
+use crate::extra::in_static;
 use crate::observer::Observer;
+use crate::simplex::Simplex;
 use crate::{CastMethod, Miss, Outcome, Ray, RayCastOptions, Status};
-use algorithm_3::algorithm_3;
+use algorithm_3::{algorithm_3, touch_beside};
 use bracket::Bracket;
 use certain::at_certain_entry;
 pub(crate) use certain::{certain, certain_closely, is_plain, show};
 pub(crate) use line::{LocalRay, Part};
 use outline::bound_entry;
 use portal::portal;
-pub(crate) use start::settle_start;
+use start::SettleFn;
+pub(crate) use start::{RayOf, settle_start};
+
+/// What is quicker than Algorithm 3 alone, and the second look at what that leaves open.
+pub(crate) struct Quicker<V: Vector> {
+    cast: CastFn<V>,
+    settle: SettleFn<V>,
+    touch_beside: fn(&mut Bracket<'_, V>, &Simplex<V>, V, V::Scalar, Option<V>) -> Option<RayContact<V>>,
+}
+
+type CastFn<V> = fn(
+    &mut dyn CastBody<Vector = V>,
+    Ray<V>,
+    <V as Vector>::Scalar,
+    Part<<V as Vector>::Scalar>,
+    &RayCastOptions<V>,
+    &mut Observer<'_, V>,
+) -> Cast<V>;
+
+impl<V: Vector> Quicker<V> {
+    pub(crate) const TABLE: Self = Self { cast: cast_by::<V, true>, settle: start::settle, touch_beside };
+}
+
+in_static!(Quicker);
 
 /// Casts a part of a ray, given in the world, against a body. Parameters are counted from where that begins. The
 /// direction may be wrong by some part of its length.
-#[inline(never)]
+#[inline(always)]
 pub(crate) fn cast<V: Vector>(
+    body: &mut dyn CastBody<Vector = V>,
+    ray: Ray<V>,
+    direction_error: V::Scalar,
+    part: Part<V::Scalar>,
+    options: &RayCastOptions<V>,
+    observer: &mut Observer<'_, V>,
+) -> Cast<V> {
+    let cast = options.extra.get().map_or(cast_by::<V, false> as CastFn<V>, |extra| extra.cast);
+    cast(body, ray, direction_error, part, options, observer)
+}
+
+/// The cast by all searches, or by Algorithm 3 alone.
+#[inline(never)]
+fn cast_by<V: Vector, const ALL: bool>(
     body: &mut dyn CastBody<Vector = V>,
     ray: Ray<V>,
     direction_error: V::Scalar,
@@ -41,7 +80,7 @@ pub(crate) fn cast<V: Vector>(
         let mut bracket = Bracket::new(body, ray, direction_error, part, options, observer);
         bracket.go_on(iterations, is_warm);
         let found = match bracket.enter_ball() {
-            Ok(()) if bracket.error < V::Scalar::infinity() => search(&mut bracket),
+            Ok(()) if bracket.error < V::Scalar::infinity() => search::<V, ALL>(&mut bracket),
             // Of numbers out of range nothing is known.
             Ok(()) => Err(Stop::Exhausted(Status::Stalled)),
             Err(stop) => Err(stop),
@@ -63,8 +102,8 @@ pub(crate) fn cast<V: Vector>(
 
 /// What the shape knows first, then the quicker search, and Algorithm 3 where both are in doubt.
 #[inline(always)]
-fn search<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
-    if bracket.options.method == CastMethod::Portal {
+fn search<V: Vector, const ALL: bool>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
+    if ALL && bracket.options.method == CastMethod::Portal {
         match at_certain_entry(bracket) {
             Err(Stop::InDoubt) => {}
             found => return found,

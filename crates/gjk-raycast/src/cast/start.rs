@@ -6,7 +6,7 @@
 
 use convex_support::numerics::bound::{raised, roundings};
 use convex_support::numerics::twofold::dot_minus;
-use convex_support::{Posed, Rounded, Scalar, SupportMap, Vector};
+use convex_support::{Point, Posed, Rounded, Scalar, Vector};
 use num_traits::Float;
 
 use super::{Cast, CastHit};
@@ -16,14 +16,20 @@ use crate::separation::{FromContact, NearContact, look_after, near_contact_of};
 use crate::shape::{Shape, WithoutLines};
 use crate::{Miss, Outcome, RayCastOptions, Status};
 
+/// Who draws a ray as it moves: a shape, or the point at the ray's source.
+pub(crate) enum RayOf<'s, V: Vector> {
+    Shape(Shape<'s, V>),
+    Point(V),
+}
+
 /// Decides about a hit that may be at the source, or about a search that stalled before it left it, of the ray that `b`
 /// draws as it moves along `direction` towards `a` swept by a ball, its skin.
 #[inline(always)]
-pub(crate) fn settle_start<V: Vector, B: SupportMap<Vector = V>>(
+pub(crate) fn settle_start<V: Vector>(
     cast: &mut Cast<V>,
     a: Shape<'_, V>,
     skin: V::Scalar,
-    b: impl FnOnce() -> Option<B>,
+    b: RayOf<'_, V>,
     direction: V,
     options: &RayCastOptions<V>,
 ) {
@@ -34,36 +40,64 @@ pub(crate) fn settle_start<V: Vector, B: SupportMap<Vector = V>>(
         Outcome::Miss(_) => false,
     };
     let is_to_be_settled = is_at_start && cast.upper > zero;
-    let left = options.max_iterations.saturating_sub(cast.iterations);
     if (is_to_be_settled || cast.is_open)
-        && left > 0
-        && let Some(b) = b()
-        && let Ok(a) = Rounded::new(a, skin)
+        && cast.iterations < options.max_iterations
+        && let Some(extra) = options.extra.get()
     {
-        let (a, b) = (WithoutLines(&a), WithoutLines(&b));
-        if !is_to_be_settled {
-            if let Outcome::Hit(CastHit { lambda, .. }) = cast.outcome {
-                let after = after_hit(&a, &b, direction, lambda, left);
-                cast.iterations += after.iterations;
-                cast.upper = cast.upper.min(after.latest);
-            }
-            return;
+        (extra.settle)(cast, a, skin, b, direction, options, is_to_be_settled);
+    }
+}
+
+pub(super) type SettleFn<V> =
+    fn(&mut Cast<V>, Shape<'_, V>, <V as Vector>::Scalar, RayOf<'_, V>, V, &RayCastOptions<V>, bool);
+
+/// The second look at a cast whose hit may be at the source, or elsewhere and open.
+#[cold]
+#[inline(never)]
+pub(super) fn settle<V: Vector>(
+    cast: &mut Cast<V>,
+    a: Shape<'_, V>,
+    skin: V::Scalar,
+    b: RayOf<'_, V>,
+    direction: V,
+    options: &RayCastOptions<V>,
+    is_to_be_settled: bool,
+) {
+    let left = options.max_iterations - cast.iterations;
+    let Ok(a) = Rounded::new(a, skin) else { return };
+    let (point, source);
+    let b: Shape<'_, V> = match b {
+        RayOf::Shape(b) => b,
+        RayOf::Point(at) => {
+            let Ok(at) = Point::new(at) else { return };
+            point = at;
+            source = WithoutLines(&point);
+            &source
         }
-        let start = start(&a, &b, direction, left);
-        cast.iterations += start.iterations;
-        match start.way {
-            Way::Touches { within } => cast.touch(within, start.spot),
-            Way::Unknown => {}
-            Way::Leaves { axis } => cast.miss(axis),
-            // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
-            Way::Enters { lambda, axis, lower, .. } if lambda > options.max_lambda => {
-                cast.miss(axis);
-                if lower <= options.max_lambda {
-                    cast.lower = lower;
-                }
-            }
-            Way::Enters { lambda, axis, lower, entry } => cast.enter(lambda, axis, lower, entry, start.spot),
+    };
+    let (a, b) = (&WithoutLines(&a), b);
+    if !is_to_be_settled {
+        if let Outcome::Hit(CastHit { lambda, .. }) = cast.outcome {
+            let after = after_hit(a, b, direction, lambda, left);
+            cast.iterations += after.iterations;
+            cast.upper = cast.upper.min(after.latest);
         }
+        return;
+    }
+    let start = start(a, b, direction, left);
+    cast.iterations += start.iterations;
+    match start.way {
+        Way::Touches { within } => cast.touch(within, start.spot),
+        Way::Unknown => {}
+        Way::Leaves { axis } => cast.miss(axis),
+        // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
+        Way::Enters { lambda, axis, lower, .. } if lambda > options.max_lambda => {
+            cast.miss(axis);
+            if lower <= options.max_lambda {
+                cast.lower = lower;
+            }
+        }
+        Way::Enters { lambda, axis, lower, entry } => cast.enter(lambda, axis, lower, entry, start.spot),
     }
 }
 
@@ -313,16 +347,13 @@ fn after_hit<V: Vector>(
     AfterHit { latest: latest + roundings(4.0, latest), iterations: looks.iterations }
 }
 
-/// Compiled into the cast, so that what it found need not be in memory for the rare case that it is changed.
 impl<V: Vector> Cast<V> {
-    #[inline(always)]
     fn miss(&mut self, axis: V) {
         (self.lower, self.upper) = (Float::infinity(), Float::infinity());
         (self.outcome, self.status) = (Outcome::Miss(Miss { axis }), Status::Converged);
     }
 
     /// A hit at the source.
-    #[inline(always)]
     fn touch(&mut self, within: V::Scalar, spot: Spot<V>) {
         let zero = V::Scalar::ZERO;
         if matches!(self.outcome, Outcome::Undecided) {
@@ -337,7 +368,6 @@ impl<V: Vector> Cast<V> {
 
     /// Turns a hit at the source, as far as it was known, into one at `lambda`, where a plane across `axis` leaves
     /// nothing to hit before `lower`.
-    #[inline(always)]
     fn enter(&mut self, lambda: V::Scalar, axis: V, lower: V::Scalar, entry: LatestEntry<V::Scalar>, spot: Spot<V>) {
         self.lower = self.lower.max(lower);
         let upper = entry.certain().max(self.lower);
@@ -360,7 +390,6 @@ impl<V: Vector> Cast<V> {
     }
 
     /// A hit that the search did not find, where the points closest to one another at the source are.
-    #[inline(always)]
     fn hit(&mut self, lambda: V::Scalar, normal: Option<V>, Spot { source, points, scale }: Spot<V>) {
         let hit = CastHit { lambda, normal, spot: source, witness: points };
         (self.outcome, self.status, self.scale) = (Outcome::Hit(hit), Status::Converged, scale);

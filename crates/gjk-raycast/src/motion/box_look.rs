@@ -33,7 +33,7 @@ impl<V: Vector> MovingPair<'_, V> {
     /// which facet is the highest, or that proves nothing.
     ///
     /// All is compiled into one function, so that where the bodies are need not be written to memory and read again.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn by_boxes(
         &self,
         time: V::Scalar,

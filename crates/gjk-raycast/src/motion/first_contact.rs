@@ -123,7 +123,10 @@ impl<'p, V: Vector> Search<'p, V> {
         let end = match options.start_in_contact {
             _ if near.gap > zero => search.advance(),
             StartInContact::Report => search.start_in_contact(),
-            StartInContact::IfDeeper => search.begin_in_contact(),
+            StartInContact::IfDeeper => match options.extra.get() {
+                Some(extra) => (extra.begin_in_contact)(&mut search),
+                None => MotionEnd::Undecided(Status::Stalled),
+            },
         };
         search.answer(end)
     }

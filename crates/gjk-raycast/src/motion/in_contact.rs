@@ -32,7 +32,7 @@ impl<V: Vector> MovingPair<'_, V> {
     /// Whether the bodies, which overlap by `depth` at least at two times, certainly have a point in common at all
     /// times between.
     #[cold]
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn keep_in_contact(&self, from: &Instant<V>, to: &Instant<V>, depth: V::Scalar) -> bool {
         let times = [from.time, to.time];
         let strays = |m| self.a.strays(m, times) + self.b.strays(m, times);

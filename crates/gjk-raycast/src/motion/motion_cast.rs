@@ -1,19 +1,26 @@
 //! When two bodies meet that move and turn.
 
-use convex_support::{AngularVelocity, Scalar, SupportMap, Vector, compiled_once};
+use convex_support::{AngularVelocity, Core, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
-use super::first_contact::Search;
+use super::boxes::Block;
+use super::first_contact::{MotionEnd, Search};
+use super::instant::{Instant, Limits};
 use super::moving_pair::MovingPair;
 use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionHit, MotionIterate};
 use super::rigid_motion::RigidMotion;
 use super::trajectory::Trajectory;
-use crate::body::{Both, Shapes};
+use crate::body::{Both, CastBody, Shapes};
 use crate::error::RayCastError;
+use crate::extra::in_static;
+use crate::linear_cast::{AtStart, as_body, by_search};
+use crate::observer::Observer;
 use crate::ray::check_limits;
 use crate::ray::{check_finite, check_numbers};
-use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, WarmStart, linear_cast};
+use crate::separation::Closer;
+use crate::shape::Shape;
+use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, WarmStart};
 
 /// When two moving bodies first touch, and where.
 ///
@@ -89,11 +96,46 @@ where
         if alike || !(turns(&rigid_a) || turns(&rigid_b)) {
             let velocity = |motion: RigidMotion<A::Vector>| if alike { A::Vector::ZERO } else { motion.velocity };
             let motion = Motion { velocity_a: velocity(rigid_a), velocity_b: velocity(rigid_b) };
-            return without_turning(a, b, motion, options);
+            if let Some(extra) = options.extra.get() {
+                return Ok(as_body(a, b, options.target_distance, |body, shapes, cores| {
+                    (extra.straight)(body, shapes, cores, motion, &options)
+                }));
+            }
         }
     }
     Ok(first_contact(&Both::<_, _>::new(a, b), [&motion_a, &motion_b], options, &mut observer))
 }
+
+/// What a search does beyond looks at one time by GJK and at what was closest before.
+pub(crate) struct Turning<V: Vector> {
+    pub(super) closer: &'static Closer<V>,
+    /// The cast of bodies that do not turn.
+    straight: fn(
+        &mut dyn CastBody<Vector = V>,
+        [Shape<'_, V>; 2],
+        [Core<V>; 2],
+        Motion<V>,
+        &MotionCastOptions<V>,
+    ) -> MotionCast<V>,
+    pub(super) by_boxes:
+        fn(&MovingPair<'_, V>, V::Scalar, &[Block<V>; 2], V, Limits<V::Scalar>, bool) -> Option<Instant<V>>,
+    pub(super) begin_in_contact: fn(&mut Search<'_, V>) -> MotionEnd<V>,
+    pub(super) keep_in_contact: fn(&MovingPair<'_, V>, &Instant<V>, &Instant<V>, V::Scalar) -> bool,
+    pub(super) have_met: fn(&MovingPair<'_, V>, &Instant<V>, V::Scalar) -> bool,
+}
+
+impl<V: Vector> Turning<V> {
+    const TABLE: Self = Self {
+        closer: &Closer::TABLE,
+        straight: without_turning,
+        by_boxes: |pair, time, blocks, axis, limits, is_close| pair.by_boxes(time, blocks, axis, limits, is_close),
+        begin_in_contact: |search| search.begin_in_contact(),
+        keep_in_contact: |pair, from, to, depth| pair.keep_in_contact(from, to, depth),
+        have_met: |pair, near, time| pair.have_met(near, time),
+    };
+}
+
+in_static!(Turning);
 
 compiled_once! {
     /// The first contact of bodies that turn.
@@ -103,27 +145,24 @@ compiled_once! {
         options: MotionCastOptions<V>,
         observer: &mut dyn FnMut(MotionIterate<V>),
     ) -> MotionCast<V> {
-        Search::run(&MovingPair::new(shapes, motions, options.target_distance), options, observer)
+        Search::run(&MovingPair::new(shapes, motions, &options), options, observer)
     }
 }
 
-/// The cast of bodies that do not turn.
-fn without_turning<A, B>(
-    a: &A,
-    b: &B,
-    motion: Motion<A::Vector>,
-    options: MotionCastOptions<A::Vector>,
-) -> Result<MotionCast<A::Vector>, RayCastError>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
-    Ok(of_linear_cast(linear_cast(a, b, motion, linear_options(&options))?, options.max_time))
+fn without_turning<V: Vector>(
+    body: &mut dyn CastBody<Vector = V>,
+    shapes: [Shape<'_, V>; 2],
+    cores: [Core<V>; 2],
+    motion: Motion<V>,
+    options: &MotionCastOptions<V>,
+) -> MotionCast<V> {
+    let wanted = LinearCastOptions { extra: AtStart::named(), ..linear_options(options) };
+    of_linear_cast(by_search(body, shapes, cores, motion, &wanted, &mut Observer::none()), options.max_time)
 }
 
-/// The same options for a motion that does not turn.
+/// The same options for a motion that does not turn, but for what they name.
 pub(crate) fn linear_options<V: Vector>(options: &MotionCastOptions<V>) -> LinearCastOptions<V> {
-    let mut wanted = LinearCastOptions::new()
+    let mut wanted = LinearCastOptions::lean()
         .with_max_time(options.max_time)
         .with_target_distance(options.target_distance)
         .with_start_in_contact(options.start_in_contact)

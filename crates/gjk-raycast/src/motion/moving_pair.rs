@@ -10,10 +10,13 @@ use super::approach::Approach;
 use super::boxes::{Block, FacetEdges};
 use super::corners::Corners;
 use super::instant::{Closeness, Instant, Limits};
+use super::motion_cast::Turning;
 use super::moving_body::MovingBody;
+use super::options::MotionCastOptions;
 use super::placed::Placed;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::body::{Pair, Shapes, TracedSupport as _};
+use crate::extra::Extra;
 use crate::gjk::rounding;
 use crate::signed_distance::rough_signed_distance;
 use crate::unit::{is_moderate, length_bound, lost_to_underflow};
@@ -22,6 +25,7 @@ use crate::{DistanceOptions, SignedDistanceOptions, distance};
 /// Two bodies and their motions.
 pub(super) struct MovingPair<'s, V: Vector> {
     pub(super) shapes: &'s dyn Shapes<Vector = V>,
+    extra: Extra<Turning<V>>,
     /// What was found of the shapes at the last time, which is mostly found again.
     pub(super) hints: Cell<[Hint; 2]>,
     pub(super) a: MovingBody<'s, V>,
@@ -43,20 +47,21 @@ impl<'s, V: Vector> MovingPair<'s, V> {
     pub(super) fn new(
         shapes: &'s dyn Shapes<Vector = V>,
         motions: [&'s dyn Trajectory<Vector = V>; 2],
-        target_distance: V::Scalar,
+        options: &MotionCastOptions<V>,
     ) -> Self {
+        let extra = options.extra;
         let [a, b] = shapes.each();
-        let a = MovingBody::new(a, motions[0], target_distance);
+        let a = MovingBody::new(a, motions[0], options.target_distance);
         let b = MovingBody::new(b, motions[1], Scalar::ZERO);
         let offset = a.core.origin - b.core.origin;
         let pair = Pair::of_cores(shapes, [a.core, b.core]);
         let knows_points = pair.closest_points(offset, pair.size(offset)).is_some();
         let blocks = || Some([Block::of(a.shape, &a.core)?, Block::of(b.shape, &b.core)?]);
-        let boxes = if knows_points { None } else { blocks() };
+        let boxes = if knows_points || extra.get().is_none() { None } else { blocks() };
         let facet = Cell::new(None);
         let (closest, iterations) = (RefCell::new(Corners::none()), Cell::new(0));
         let hints = Cell::new([Hint::new(), Hint::new()]);
-        Self { shapes, hints, a, b, knows_points, boxes, facet, closest, iterations }
+        Self { shapes, extra, hints, a, b, knows_points, boxes, facet, closest, iterations }
     }
 
     /// Counts support points.
@@ -92,12 +97,16 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         }
     }
 
+    /// Two boxes at a time, if that is what they are.
+    #[inline(always)]
+    fn by_facets(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>, is_close: bool) -> Option<Instant<V>> {
+        (self.extra.get()?.by_boxes)(self, time, self.boxes.as_ref()?, axis, limits, is_close)
+    }
+
     /// The bodies at a time, whose closest points are not known in closed form.
     #[inline(never)]
     fn by_search(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
-        if let Some(boxes) = &self.boxes
-            && let Some(known) = self.by_boxes(time, boxes, axis, limits, false)
-        {
+        if let Some(known) = self.by_facets(time, axis, limits, false) {
             return known;
         }
         let placed = self.placed(time);
@@ -129,7 +138,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
     ) -> Instant<V> {
         let wanted =
             SignedDistanceOptions::new().with_axis(axis).with_limit(limits.distance).with_depth_limit(limits.depth);
-        let answer = rough_signed_distance(placed, wanted);
+        let answer = rough_signed_distance(placed, wanted, self.extra.part(|extra| extra.closer));
         self.count(answer.iterations);
         let (point_a, point) = (answer.point_a + placed.place, answer.point_b + placed.place);
         let (normal, distance) = (answer.normal, answer.signed_distance);
@@ -177,11 +186,10 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
     }
 
     fn closely(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
-        let known = match &self.boxes {
+        let known = match self.knows_points {
             _ if limits.depth > Scalar::ZERO => None,
-            Some(boxes) => self.by_boxes(time, boxes, axis, limits, true),
-            None if self.knows_points => self.by_closest_points(time, axis, Closeness::Close),
-            None => None,
+            true => self.by_closest_points(time, axis, Closeness::Close),
+            false => self.by_facets(time, axis, limits, true),
         };
         known.unwrap_or_else(|| self.closely_placed(time, &self.placed(time), axis, limits))
     }
@@ -226,7 +234,7 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
     }
 
     fn stay_in_contact(&self, from: &Instant<V>, to: &Instant<V>, depth: V::Scalar) -> bool {
-        self.keep_in_contact(from, to, depth)
+        self.extra.get().is_some_and(|extra| (extra.keep_in_contact)(self, from, to, depth))
     }
 
     fn speed_at(&self, there: &Instant<V>) -> V::Scalar {
@@ -235,7 +243,7 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
     }
 
     fn pass_through(&self, near: &Instant<V>, time: V::Scalar) -> bool {
-        self.have_met(near, time)
+        self.extra.get().is_some_and(|extra| (extra.have_met)(self, near, time))
     }
 
     /// Not the point that is deepest in `a`: where the way out of a small body is through a large one, it is far
@@ -244,7 +252,8 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
     #[inline(never)]
     fn common_point(&self, there: &Instant<V>) -> V {
         let placed = self.placed(there.time);
-        let answer = distance(&placed.a, &placed.b, DistanceOptions::new());
+        let wanted = DistanceOptions { extra: self.extra.part(|extra| extra.closer), ..DistanceOptions::lean() };
+        let answer = distance(&placed.a, &placed.b, wanted);
         self.count(answer.iterations);
         answer.point_b + placed.place
     }

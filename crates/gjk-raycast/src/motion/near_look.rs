@@ -14,7 +14,7 @@ use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::body::{Pair, PointPair};
 use crate::separation::Cores;
-use crate::separation::{across_corners, faces_of_simplex, room_around_zero};
+use crate::separation::across_corners;
 use crate::simplex::{MAX_POINTS, project};
 use crate::unit::is_moderate;
 
@@ -103,8 +103,7 @@ impl<V: Vector> MovingPair<'_, V> {
             return Some(infinity);
         }
         points[len] = cores.support(unit)?.point;
-        let one = |_| Scalar::ONE;
-        Some(-room_around_zero(faces_of_simplex(&points), |_| cores.greatest_error(), one) * scale)
+        Some(-cores.room_within(&points[..=len]) * scale)
     }
 }
 

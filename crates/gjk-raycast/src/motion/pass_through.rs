@@ -42,7 +42,7 @@ impl<V: Vector> MovingPair<'_, V> {
     /// Whether the bodies, which a plane separates at the time of `near`, certainly have a point in common at some time
     /// until the given one, because they have passed through one another.
     #[cold]
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn have_met(&self, near: &Instant<V>, time: V::Scalar) -> bool {
         let (from, to) = (self.placed(near.time), self.placed(time));
         let Some(corners) = self.closest_corners(&from, near.normal) else { return false };

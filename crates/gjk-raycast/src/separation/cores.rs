@@ -5,11 +5,13 @@ use convex_support::{Core, Rounding, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::near_contact::{NEAR, NearContact, is_near_contact, near_contact};
+use super::room::{faces_of_simplex, room_around_zero};
 use super::zonotope::{Zonotope, parallelotope};
 use super::{OfOverlap, Wanted};
 use crate::body::{AnyPair, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
+use crate::simplex::MAX_POINTS;
 use crate::symmetric::Symmetric;
 use crate::unit::lost_to_underflow;
 
@@ -289,6 +291,16 @@ impl<'a, V: Vector> Cores<'a, V> {
     #[inline(always)]
     pub(super) fn is_peeled(&self) -> bool {
         self.pair.peeled != [Scalar::ZERO; 2]
+    }
+
+    /// The radius of a ball about zero that is certain to be within the simplex with these corners, one more than there
+    /// are dimensions; not positive where zero may be outside.
+    pub(crate) fn room_within(&self, corners: &[V]) -> V::Scalar {
+        let mut points = [V::ZERO; MAX_POINTS];
+        for (point, &corner) in points.iter_mut().zip(corners) {
+            *point = corner;
+        }
+        room_around_zero(faces_of_simplex(&points), |_| self.greatest_error(), |_| Scalar::ONE)
     }
 
     /// What lengths in the unit are to be multiplied by.

@@ -14,7 +14,7 @@ use crate::simplex::{MAX_POINTS, cross};
 ///
 /// By how much is told by [`room_around_zero`](super::room_around_zero()), in more than twice the operations, which
 /// every query whose bodies overlap would pay.
-pub(super) fn is_around_zero<V: Vector>(points: &[V], error: V::Scalar) -> bool {
+pub(crate) fn is_around_zero<V: Vector>(points: &[V], error: V::Scalar) -> bool {
     let length = |p: V| p.length() + error;
     let twice = error * V::Scalar::from_f64(2.0);
     let mut sides = (0, 0);

@@ -25,6 +25,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Pair, PointPair};
+use crate::extra::{Extra, in_static};
 use crate::gjk::{End, Gjk};
 use crate::observer::Observer;
 use crate::{Distance, SignedDistance, SignedDistanceOptions, Status, SubAlgorithm};
@@ -32,13 +33,13 @@ use cores::{ClosedForm, slack};
 pub(crate) use cores::{Cores, Uncertainty};
 pub(crate) use direct::direct;
 use expansion::{Expanded, expand};
+pub(crate) use faces::is_around_zero;
 use met::MetPoint;
 pub(crate) use near_contact::{NearContact, is_near_contact, near_contact_of};
-pub(crate) use room::{FromContact, across_corners, faces_of_simplex, look_after, room_around_zero};
+pub(crate) use room::{FromContact, across_corners, look_after};
 use witness::Ends;
 
 /// What a question wants to know of two bodies, and when the search may stop.
-#[derive(Clone, Copy)]
 pub(crate) struct Wanted<V: Vector> {
     pub(crate) of_overlap: OfOverlap,
     /// Where to begin and when to stop. What concerns the depth counts where one is looked for.
@@ -46,7 +47,22 @@ pub(crate) struct Wanted<V: Vector> {
     /// How wide a bracket on the distance may stay, relative to it.
     pub(crate) tolerance: V::Scalar,
     pub(crate) sub_algorithm: SubAlgorithm,
+    /// What is asked where GJK does not decide.
+    pub(crate) extra: Extra<Closer<V>>,
 }
+
+/// The second and the third means of the search. Without them it answers what GJK knows.
+pub(crate) struct Closer<V: Vector> {
+    look_near: fn(&mut Cores<'_, V>, &Wanted<V>, Option<&Gjk<V>>) -> bool,
+    reach: fn(&mut Cores<'_, V>, &Wanted<V>, &mut Gjk<V>, End, &mut Observer<'_, V>) -> Separation<V>,
+}
+
+impl<V: Vector> Closer<V> {
+    pub(crate) const TABLE: Self =
+        Self { look_near: |cores, wanted, state| cores.look_near(wanted, state), reach: reach_closely };
+}
+
+in_static!(Closer);
 
 /// What is asked of bodies that overlap.
 #[derive(Clone, Copy, PartialEq)]
@@ -60,8 +76,8 @@ pub(crate) enum OfOverlap {
 
 impl<V: Vector> Wanted<V> {
     #[inline(always)]
-    pub(crate) fn new(of_overlap: OfOverlap, options: SignedDistanceOptions<V>) -> Self {
-        Self { of_overlap, options, tolerance: Scalar::ZERO, sub_algorithm: SubAlgorithm::Regions }
+    pub(crate) fn new(of_overlap: OfOverlap, options: SignedDistanceOptions<V>, extra: Extra<Closer<V>>) -> Self {
+        Self { of_overlap, options, tolerance: Scalar::ZERO, sub_algorithm: SubAlgorithm::Regions, extra }
     }
 
     /// Whether more is asked of bodies that overlap.
@@ -97,15 +113,17 @@ pub(crate) struct Separation<V: Vector> {
     unexpanded: usize,
 }
 
-/// What can be known of the cores. It is compiled once for all who ask.
+/// What can be known of the cores, and of those that overlap by how much: both are compiled once for all who ask, so
+/// that who asks for no depth has no code for it.
 #[inline(never)]
-pub(crate) fn separation<V: Vector>(
+pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     cores: &mut Cores<'_, V>,
     wanted: &Wanted<V>,
     observer: &mut Observer<'_, V>,
 ) -> Separation<V> {
-    let options = &wanted.options;
-    if wanted.is_depth() {
+    debug_assert_eq!(IS_DEPTH, wanted.is_depth());
+    let (options, extra) = (&wanted.options, wanted.extra.get());
+    if IS_DEPTH {
         // Rounded cores are mostly apart, which takes a search to know.
         let is_rounded = cores.radius() > Scalar::ZERO;
         if !is_rounded
@@ -122,72 +140,91 @@ pub(crate) fn separation<V: Vector>(
     }
     let mut state = cores.first_state(options.axis);
     let closest = cores.closest_points();
+    let tells_all = |cores: &mut Cores<'_, V>, state: Option<&Gjk<V>>| {
+        extra.is_some_and(|extra| (extra.look_near)(cores, wanted, state))
+    };
     // Where the closest points are known, there is nothing to search near contact.
-    if let Some((_, v)) = closest
-        && cores.is_near(v.length())
-        && cores.look_near(wanted, None)
+    let mut is_near = closest.is_some_and(|(_, v)| cores.is_near(v.length()));
+    if is_near
+        && tells_all(cores, None)
         && let Some(near) = &cores.near
     {
         return Separation::of_near_contact(cores, near);
     }
     let end = cores.approach(wanted, &mut state, closest, observer);
-    if closest.is_none()
-        && cores.are_near(&mut state)
-        && cores.look_near(wanted, Some(&state))
-        && let Some(near) = &cores.near
-    {
-        return Separation::of_near_contact(cores, near);
+    if closest.is_none() && cores.are_near(&mut state) {
+        is_near = true;
+        if tells_all(cores, Some(&state))
+            && let Some(near) = &cores.near
+        {
+            return Separation::of_near_contact(cores, near);
+        }
     }
-    let is_known = if wanted.is_depth() {
+    let is_known = if IS_DEPTH {
         end == End::Separated && cores.is_well_apart(state.length)
     } else {
-        end != End::Stalled && cores.near.is_none()
+        end != End::Stalled && !(is_near && (extra.is_none() || cores.near.is_some()))
     };
-    if !is_known {
-        let known = reach_closely(cores, options, &mut state, end, observer);
-        return if wanted.is_depth() { known } else { known.with_common_points(cores, &mut state) };
+    if !is_known && let Some(extra) = extra {
+        return (extra.reach)(cores, wanted, &mut state, end, observer);
     }
-    let known = Separation::of_gjk(cores, &mut state, end);
-    // A simplex of full dimension has zero inside for certain, or a closer look would have been taken.
-    let is_certain = end == End::Overlap && !wanted.is_depth() && state.simplex.points().len() > V::DIM;
-    let (depth, inner) = if is_certain { (V::Scalar::infinity(), Scalar::ZERO) } else { (known.depth, known.inner) };
-    Separation { depth, inner, overlap: Some(end == End::Overlap), ..known }
+    let mut known = Separation::of_gjk(cores, &mut state, end);
+    let is_full = end == End::Overlap && state.simplex.points().len() > V::DIM;
+    if IS_DEPTH {
+        if !is_known && is_full {
+            known.inner = known.inner.max(cores.room_within(state.simplex.points()));
+        }
+    } else {
+        // A simplex of full dimension has zero inside for certain, or a closer look would have been taken.
+        if is_known && is_full {
+            (known.depth, known.inner) = (V::Scalar::infinity(), Scalar::ZERO);
+        }
+        known.overlap = (end != End::Stalled).then_some(end == End::Overlap);
+    }
+    // Cores that no plane keeps apart are not known as well as they can be.
+    if !is_known && end != End::Separated {
+        known.status = Status::Stalled;
+    }
+    known
 }
 
 /// What can be known of cores that overlap or nearly touch, after a search for the points that are closest.
 #[inline(never)]
 fn reach_closely<V: Vector>(
     cores: &mut Cores<'_, V>,
-    options: &SignedDistanceOptions<V>,
+    wanted: &Wanted<V>,
     state: &mut Gjk<V>,
     mut end: End,
     observer: &mut Observer<'_, V>,
 ) -> Separation<V> {
+    let options = &wanted.options;
     let is_rounded = !cores.is_peeled() && cores.radius() > Scalar::ZERO;
-    if is_rounded
-        && end == End::Overlap
-        && let Some(known) = cores.closed_form(options.axis)
-    {
-        return Separation::of_closed_form(known);
-    }
-    // Half of what may be asked for is left for a second run.
-    let may_repeat = end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
-    if may_repeat && !cores.is_peeled() && cores.peel() {
-        *state = cores.first_state(options.axis);
-        end = cores.approach(&Wanted::new(OfOverlap::Depth, *options), state, None, observer);
-    }
-    if !cores.is_well_apart(state.length) {
-        cores.sharpen();
-    }
-    let is_apart = end == End::Separated || !state.length.is_finite();
-    let expanded = if is_apart { None } else { expand(cores, state, options, observer) };
-    match expanded {
-        Some(expanded) => Separation::of_expansion(cores, &expanded, state, end),
-        None => {
-            let known = Separation::of_gjk(cores, state, end);
-            Separation { status: if is_apart { known.status } else { Status::Stalled }, ..known }
+    let known = if is_rounded && end == End::Overlap { cores.closed_form(options.axis) } else { None };
+    let known = if let Some(known) = known {
+        Separation::of_closed_form(known)
+    } else {
+        // Half of what may be asked for is left for a second run.
+        let may_repeat =
+            end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
+        if may_repeat && !cores.is_peeled() && cores.peel() {
+            *state = cores.first_state(options.axis);
+            let wanted = Wanted::new(OfOverlap::Depth, *options, wanted.extra);
+            end = cores.approach(&wanted, state, None, observer);
         }
-    }
+        if !cores.is_well_apart(state.length) {
+            cores.sharpen();
+        }
+        let is_apart = end == End::Separated || !state.length.is_finite();
+        let expanded = if is_apart { None } else { expand(cores, state, options, observer) };
+        match expanded {
+            Some(expanded) => Separation::of_expansion(cores, &expanded, state, end),
+            None => {
+                let known = Separation::of_gjk(cores, state, end);
+                Separation { status: if is_apart { known.status } else { Status::Stalled }, ..known }
+            }
+        }
+    };
+    if wanted.is_depth() { known } else { known.with_common_points(cores, state) }
 }
 
 impl<V: Vector> Separation<V> {

@@ -19,6 +19,7 @@ use convex_support::{Scalar, Vector};
 use super::bracket::Bracket;
 use super::{RayContact, Stop};
 use crate::gjk::Progress;
+use crate::separation::is_around_zero;
 use crate::simplex::{Closest, MAX_POINTS, Simplex, project};
 use refine::refine;
 use swept_simplex::{Entry, entry};
@@ -87,8 +88,12 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
         if length - bracket.radius <= bracket.noise {
             // x is in the body, or no farther from it than rounding.
             simplex.retain(face, weights);
-            let contact = bracket.close_at_low(to_x, simplex.weighted_witness());
-            return contact.map(Approached::Touches).ok_or(Stop::InDoubt);
+            let contact = bracket.close_at_low(to_x, simplex.weighted_witness()).ok_or(Stop::InDoubt)?;
+            // Mostly a second look tells more of it.
+            if bracket.options.extra.get().is_none() && is_inside(bracket, simplex, x) {
+                bracket.enter_for_certain(contact.mu);
+            }
+            return Ok(Approached::Touches(contact));
         }
         let slope = to_x.dot(line.direction) / length;
         let progress = nearing.goes_on(length);
@@ -107,7 +112,7 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
         let within = if progress { bracket.noise } else { bracket.noise + bracket.error };
         if length - bracket.radius <= within {
             // With the slope of a plane ahead the ray may be past the simplex.
-            let contact = if slope < Scalar::ZERO { touch_beside(bracket, simplex, v, within, beside) } else { None };
+            let contact = if slope < Scalar::ZERO { look_beside(bracket, simplex, v, within, beside) } else { None };
             return contact.map(Approached::Touches).ok_or(Stop::InDoubt);
         }
         if !progress {
@@ -119,12 +124,24 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
     }
 }
 
+/// Whether a point of the line is in the body by more than what that and the simplex are wrong by: within the radius
+/// around the simplex, or within a simplex of full dimension.
+fn is_inside<V: Vector>(bracket: &Bracket<'_, V>, simplex: &Simplex<V>, x: V) -> bool {
+    let wrong = (bracket.error + bracket.noise) * Scalar::from_f64(2.0);
+    let mut seen = [V::ZERO; MAX_POINTS];
+    for (s, p) in seen.iter_mut().zip(simplex.points()) {
+        *s = *p - x;
+    }
+    let is_in_round = (simplex.weighted_point() - x).norm() + wrong < bracket.radius;
+    is_in_round || is_around_zero(&seen[..simplex.points().len()], wrong)
+}
+
 /// The contact where the line enters the round of a swept simplex no deeper than errors may have brought it: planes at
 /// the entry then lean so far along the line that none of them closes the bracket.
 fn graze<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -> Option<RayContact<V>> {
     let (v, within) = (aside(bracket, simplex).ok()?, bracket.noise + bracket.error);
     let is_graze = bracket.radius > within && bracket.radius - v.norm() <= within;
-    if is_graze { touch_beside(bracket, simplex, v, within, None) } else { None }
+    if is_graze { look_beside(bracket, simplex, v, within, None) } else { None }
 }
 
 /// The shortest vector from the simplex to the line, whose face and weights the simplex is left with.
@@ -137,8 +154,19 @@ fn aside<V: Vector>(bracket: &Bracket<'_, V>, simplex: &mut Simplex<V>) -> Resul
     Ok(line.across(v))
 }
 
+/// As [`touch_beside`], if the options name that.
+fn look_beside<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    simplex: &Simplex<V>,
+    v: V,
+    within: V::Scalar,
+    normal: Option<V>,
+) -> Option<RayContact<V>> {
+    (bracket.options.extra.get()?.touch_beside)(bracket, simplex, v, within, normal)
+}
+
 /// The contact where the line comes within rounding of the simplex without entering it ahead of x.
-fn touch_beside<V: Vector>(
+pub(super) fn touch_beside<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     simplex: &Simplex<V>,
     v: V,
