@@ -42,6 +42,9 @@ const INTERSECTS: &str = "
 const DISTANCE: &str = "
     println!(\"{:?}\", gjk_raycast::distance(&a, &b, Default::default()).lower);";
 
+const LEAN_DISTANCE: &str = "
+    println!(\"{:?}\", gjk_raycast::distance(&a, &b, gjk_raycast::DistanceOptions::lean()).lower);";
+
 const DEPTH: &str = "
     println!(\"{:?}\", gjk_raycast::signed_distance(&a, &b, Default::default()).lower);";
 
@@ -50,15 +53,31 @@ const RAY: &str = "
     let ray = Ray { source: DVec3::splat(12.0 * input()), direction: DVec3::splat(-input()) };
     println!(\"{:?}\", ray_cast(&b, ray, RayCastOptions::default()).unwrap().lower);";
 
+const LEAN_RAY: &str = "
+    use gjk_raycast::{Ray, RayCastOptions, ray_cast};
+    let ray = Ray { source: DVec3::splat(12.0 * input()), direction: DVec3::splat(-input()) };
+    println!(\"{:?}\", ray_cast(&b, ray, RayCastOptions::lean()).unwrap().lower);";
+
 const LINEAR: &str = "
     use gjk_raycast::{LinearCastOptions, Motion, linear_cast};
     let motion = Motion { velocity_a: DVec3::splat(input()), velocity_b: DVec3::ZERO };
     println!(\"{:?}\", linear_cast(&a, &b, motion, LinearCastOptions::default()).unwrap().lower);";
 
+const LEAN_LINEAR: &str = "
+    use gjk_raycast::{LinearCastOptions, Motion, linear_cast};
+    let motion = Motion { velocity_a: DVec3::splat(input()), velocity_b: DVec3::ZERO };
+    println!(\"{:?}\", linear_cast(&a, &b, motion, LinearCastOptions::lean()).unwrap().lower);";
+
 const TURNING: &str = "
     use gjk_raycast::{MotionCastOptions, RigidMotion, motion_cast};
     let turning = RigidMotion::rotation(DVec3::splat(input()), DVec3::splat(9.0));
     let options = MotionCastOptions::new().with_max_time(input());
+    println!(\"{:?}\", motion_cast(&a, turning, &b, RigidMotion::default(), options).unwrap().lower);";
+
+const LEAN_TURNING: &str = "
+    use gjk_raycast::{MotionCastOptions, RigidMotion, motion_cast};
+    let turning = RigidMotion::rotation(DVec3::splat(input()), DVec3::splat(9.0));
+    let options = MotionCastOptions::lean().with_max_time(input());
     println!(\"{:?}\", motion_cast(&a, turning, &b, RigidMotion::default(), options).unwrap().lower);";
 
 const ENCLOSING: &str = "
@@ -101,10 +120,14 @@ const PROGRAMS: &[Program] = &[
     },
     Program { name: "gjk-raycast, `intersects`", import: GJK_RAYCAST, body: &[BOXES, INTERSECTS] },
     Program { name: "gjk-raycast, `distance`", import: GJK_RAYCAST, body: &[BOXES, DISTANCE] },
+    Program { name: "gjk-raycast, `distance`, lean", import: GJK_RAYCAST, body: &[BOXES, LEAN_DISTANCE] },
     Program { name: "gjk-raycast, `signed_distance`", import: GJK_RAYCAST, body: &[BOXES, DEPTH] },
     Program { name: "gjk-raycast, `ray_cast`", import: GJK_RAYCAST, body: &[BOXES, RAY] },
+    Program { name: "gjk-raycast, `ray_cast`, lean", import: GJK_RAYCAST, body: &[BOXES, LEAN_RAY] },
     Program { name: "gjk-raycast, `linear_cast`", import: GJK_RAYCAST, body: &[BOXES, LINEAR] },
+    Program { name: "gjk-raycast, `linear_cast`, lean", import: GJK_RAYCAST, body: &[BOXES, LEAN_LINEAR] },
     Program { name: "gjk-raycast, `motion_cast`", import: GJK_RAYCAST, body: &[BOXES, TURNING] },
+    Program { name: "gjk-raycast, `motion_cast`, lean", import: GJK_RAYCAST, body: &[BOXES, LEAN_TURNING] },
     Program {
         name: "gjk-raycast, no `std`, `distance`",
         import: Some(("gjk-raycast", "\"f64\"")),

@@ -136,6 +136,7 @@ where
 }
 
 /// How shapes that touch at the start are known, beside what the cast itself knows of them.
+#[allow(clippy::type_complexity, reason = "it is said once")]
 pub(crate) struct AtStart<V: Vector> {
     rays: &'static Quicker<V>,
     touch: fn(&mut LinearCast<V>, &StartingPair<'_, V>, &LinearCastOptions<V>),

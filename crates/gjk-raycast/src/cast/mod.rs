@@ -29,6 +29,7 @@ use start::SettleFn;
 pub(crate) use start::{RayOf, settle_start};
 
 /// What is quicker than Algorithm 3 alone, and the second look at what that leaves open.
+#[allow(clippy::type_complexity, reason = "it is said once")]
 pub(crate) struct Quicker<V: Vector> {
     cast: CastFn<V>,
     settle: SettleFn<V>,

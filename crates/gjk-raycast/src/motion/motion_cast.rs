@@ -107,6 +107,7 @@ where
 }
 
 /// What a search does beyond looks at one time by GJK and at what was closest before.
+#[allow(clippy::type_complexity, reason = "it is said once")]
 pub(crate) struct Turning<V: Vector> {
     pub(super) closer: &'static Closer<V>,
     /// The cast of bodies that do not turn.

@@ -52,6 +52,7 @@ pub(crate) struct Wanted<V: Vector> {
 }
 
 /// The second and the third means of the search. Without them it answers what GJK knows.
+#[allow(clippy::type_complexity, reason = "it is said once")]
 pub(crate) struct Closer<V: Vector> {
     look_near: fn(&mut Cores<'_, V>, &Wanted<V>, Option<&Gjk<V>>) -> bool,
     reach: fn(&mut Cores<'_, V>, &Wanted<V>, &mut Gjk<V>, End, &mut Observer<'_, V>) -> Separation<V>,
@@ -121,7 +122,7 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     wanted: &Wanted<V>,
     observer: &mut Observer<'_, V>,
 ) -> Separation<V> {
-    debug_assert_eq!(IS_DEPTH, wanted.is_depth());
+    debug_assert_eq!(IS_DEPTH, wanted.is_depth(), "what is asked of overlap");
     let (options, extra) = (&wanted.options, wanted.extra.get());
     if IS_DEPTH {
         // Rounded cores are mostly apart, which takes a search to know.
