@@ -32,26 +32,35 @@ const TURN: f64 = 0.015;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
 pub struct WarmStart<V: Vector> {
     /// The normal that is expected.
     pub(crate) axis: V,
-    /// How far it may be off, as an angle, where that is known.
-    error: Option<V::Scalar>,
-    /// The normal of the last hit, and how it had turned since the hit before.
-    normal: Option<V>,
-    turn: Option<V>,
+    /// How the normal turned from the hit before to the last one.
+    turn: V,
+    /// How far the axis may be off, as an angle.
+    error: V::Scalar,
+    known: Known,
+}
+
+/// What a warm start knows; each is more than the one before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+enum Known {
+    /// A guess of the axis.
+    Guess,
+    /// The normal of a hit, which is the axis.
+    Normal,
+    /// The turn and the error too.
+    Turn,
+    /// The turn was foretold: the axis is a turn from the normal.
+    Foretold,
 }
 
 impl<V: Vector> WarmStart<V> {
     /// Nothing but an axis: a guess of the normal, or of a separating axis.
     #[must_use]
     pub const fn new(axis: V) -> Self {
-        Self { axis, error: None, normal: None, turn: None }
+        Self { axis, turn: V::ZERO, error: V::Scalar::ZERO, known: Known::Guess }
     }
 
     /// After a hit with this normal, found with what was told `before`.
@@ -60,28 +69,29 @@ impl<V: Vector> WarmStart<V> {
     /// to the square of that. But from face to face a normal jumps. So the last turn counts only if it was foretold by
     /// the one before, to within a half; and by how much it was not, the next one may be off.
     pub(crate) fn after(before: Option<Self>, normal: V) -> Self {
-        let mut next = Self { normal: Some(normal), ..Self::new(normal) };
-        let Some(before) = before else { return next };
-        let Some(last) = before.normal else { return next };
+        let first = Self { known: Known::Normal, ..Self::new(normal) };
+        let last = |before: Self| match before.known {
+            Known::Guess => None,
+            Known::Normal | Known::Turn => Some(before.axis),
+            Known::Foretold => Some(before.axis - before.turn),
+        };
+        let Some((before, last)) = before.and_then(|before| Some((before, last(before)?))) else { return first };
         let turn = normal - last;
-        let still = turn.norm();
-        (next.turn, next.error) = (Some(turn), Some(still));
-        if let Some(turn_before) = before.turn {
-            let error = (turn - turn_before).norm();
-            if error + error < still {
-                (next.axis, next.error) = (normal + turn, Some(error));
-            }
+        let (still, error) = (turn.norm(), (turn - before.turn).norm());
+        if before.known >= Known::Turn && error + error < still {
+            Self { axis: normal + turn, turn, error, known: Known::Foretold }
+        } else {
+            Self { axis: normal, turn, error: still, known: Known::Turn }
         }
-        next
     }
 
     /// How far the normal may be from the axis, as an angle.
     pub(crate) fn error(&self) -> V::Scalar {
-        self.error.unwrap_or(V::Scalar::from_f64(TURN))
+        if self.known >= Known::Turn { self.error } else { V::Scalar::from_f64(TURN) }
     }
 
     /// The same of the bodies in the other order.
     pub(crate) fn reversed(self) -> Self {
-        Self { axis: -self.axis, normal: self.normal.map(|n| -n), turn: self.turn.map(|n| -n), ..self }
+        Self { axis: -self.axis, turn: -self.turn, ..self }
     }
 }

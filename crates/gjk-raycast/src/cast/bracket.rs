@@ -15,7 +15,7 @@ use crate::body::{CastBody, Measures, PointPair};
 use crate::observer::Observer;
 use crate::simplex::MAX_POINTS;
 use crate::unit::{lost_to_underflow, power_of_two_near, reciprocal_of_power};
-use crate::{Iterate, Ray, RayCastOptions, Status, WarmStart};
+use crate::{Iterate, Ray, RayCastOptions, Status};
 
 /// The largest tolerance, in sizes of the body.
 const LARGEST_TOLERANCE: f64 = 16.0;
@@ -29,9 +29,6 @@ pub(super) const NOISE: f64 = 8.0;
 /// How many errors deep a ray goes at least into a ball that rolls within the body, for its slope to tell where it is
 /// in the body for certain.
 pub(super) const DEEP: f64 = 64.0;
-
-/// Support points until a search that begins with what the last frame tells counts as in doubt.
-const MAX_WARM: usize = 32;
 
 /// A support point of the core, and what it is made of.
 pub(super) type SupportPoint<V> = (V, PointPair<V>);
@@ -82,10 +79,6 @@ pub(super) struct Bracket<'a, V: Vector> {
     pub(super) scale: V::Scalar,
     observer: Observer<'a, V>,
     iterations: usize,
-    /// As many as there may be.
-    most_iterations: usize,
-    /// Whether the search begins with what the last frame tells.
-    is_warm: bool,
     /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative
     /// where the line misses it, and the half, which is then zero.
     chord: (V::Scalar, V::Scalar),
@@ -157,8 +150,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
             scale,
             observer: observer.by_ref(),
             iterations: 0,
-            most_iterations: options.max_iterations,
-            is_warm: false,
             chord: (squared, half_chord),
             low: PlaneCrossing { bound: Bound::exact(ray.start.max(-half_chord)), slope: zero },
             normal: None,
@@ -167,19 +158,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
             hull: V::Scalar::infinity(),
             around: None,
         }
-    }
-
-    /// Begins after so many support points, and with what the last frame tells or without it.
-    pub(super) fn go_on(&mut self, iterations: usize, is_warm: bool) {
-        (self.iterations, self.is_warm) = (iterations, is_warm);
-        if is_warm {
-            self.most_iterations = self.most_iterations.min(MAX_WARM);
-        }
-    }
-
-    /// What the last frame tells, until it is forgotten.
-    pub(super) fn warm_start(&self) -> Option<WarmStart<V>> {
-        if self.is_warm { self.options.warm_start } else { None }
     }
 
     pub(super) fn line(&self) -> Line<V> {
@@ -305,7 +283,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// An observer sees it beside `v`, the vector that led to `n`, and the points of the simplex that `v` is of.
     #[inline(always)]
     pub(super) fn support(&mut self, n: V, v: V, simplex: &[V]) -> Result<SupportPoint<V>, Stop<V>> {
-        if self.iterations >= self.most_iterations {
+        if self.iterations >= self.options.max_iterations {
             return Err(Stop::Exhausted(Status::IterationLimit));
         }
         let (point, witness) = self.body.support(n);

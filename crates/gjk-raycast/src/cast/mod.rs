@@ -51,6 +51,9 @@ impl<V: Vector> Quicker<V> {
 
 in_static!(Quicker);
 
+/// Support points until a search that begins with what the last frame tells counts as in doubt.
+const MAX_WARM: usize = 32;
+
 /// Casts a part of a ray, given in the world, against a body. Parameters are counted from where that begins. The
 /// direction may be wrong by some part of its length.
 #[inline(always)]
@@ -63,7 +66,44 @@ pub(crate) fn cast<V: Vector>(
     observer: &mut Observer<'_, V>,
 ) -> Cast<V> {
     let cast = options.extra.get().map_or(cast_by::<V, false> as CastFn<V>, |extra| extra.cast);
-    cast(body, ray, direction_error, part, options, observer)
+    if options.warm_start.is_some() {
+        warm_cast(cast, body, ray, direction_error, part, options, observer)
+    } else {
+        cast(body, ray, direction_error, part, options, observer)
+    }
+}
+
+/// Looks first where the last frame tells to. What that leaves in doubt is cast again without it.
+#[inline(never)]
+fn warm_cast<V: Vector>(
+    cast: CastFn<V>,
+    body: &mut dyn CastBody<Vector = V>,
+    ray: Ray<V>,
+    direction_error: V::Scalar,
+    part: Part<V::Scalar>,
+    options: &RayCastOptions<V>,
+    observer: &mut Observer<'_, V>,
+) -> Cast<V> {
+    let told = RayCastOptions { max_iterations: options.max_iterations.min(MAX_WARM), ..*options };
+    let warm = cast(body, ray, direction_error, part, &told, observer);
+    let is_known = match warm.outcome {
+        Outcome::Hit(_) => warm.upper < V::Scalar::infinity(),
+        Outcome::Miss(_) => true,
+        Outcome::Undecided => false,
+    };
+    if is_known {
+        return warm;
+    }
+    let max_iterations = options.max_iterations - warm.iterations;
+    let cold = cast(
+        body,
+        ray,
+        direction_error,
+        part,
+        &RayCastOptions { warm_start: None, max_iterations, ..*options },
+        observer,
+    );
+    Cast { iterations: warm.iterations + cold.iterations, ..cold }
 }
 
 /// The cast by all searches, or by Algorithm 3 alone.
@@ -76,29 +116,17 @@ fn cast_by<V: Vector, const ALL: bool>(
     options: &RayCastOptions<V>,
     observer: &mut Observer<'_, V>,
 ) -> Cast<V> {
-    let (mut is_warm, mut iterations) = (options.warm_start.is_some(), 0);
-    loop {
-        let mut bracket = Bracket::new(body, ray, direction_error, part, options, observer);
-        bracket.go_on(iterations, is_warm);
-        let found = match bracket.enter_ball() {
-            Ok(()) if bracket.error < V::Scalar::infinity() => search::<V, ALL>(&mut bracket),
-            // Of numbers out of range nothing is known.
-            Ok(()) => Err(Stop::Exhausted(Status::Stalled)),
-            Err(stop) => Err(stop),
-        };
-        if found.is_ok() && bracket.is_entry_open() && bracket.is_past_start() {
-            bound_entry(&mut bracket);
-        }
-        let is_known = match &found {
-            Ok(_) => !bracket.is_entry_open(),
-            Err(stop) => matches!(stop, Stop::Miss(_)),
-        };
-        if is_known || !is_warm {
-            return conclude(&bracket, found);
-        }
-        // What the last frame tells leaves it in doubt, and is forgotten.
-        (is_warm, iterations) = (false, bracket.iterations());
+    let mut bracket = Bracket::new(body, ray, direction_error, part, options, observer);
+    let found = match bracket.enter_ball() {
+        Ok(()) if bracket.error < V::Scalar::infinity() => search::<V, ALL>(&mut bracket),
+        // Of numbers out of range nothing is known.
+        Ok(()) => Err(Stop::Exhausted(Status::Stalled)),
+        Err(stop) => Err(stop),
+    };
+    if found.is_ok() && bracket.is_entry_open() && bracket.is_past_start() {
+        bound_entry(&mut bracket);
     }
+    conclude(&bracket, found)
 }
 
 /// What the shape knows first, then the quicker search, and Algorithm 3 where both are in doubt.
@@ -113,7 +141,7 @@ fn search<V: Vector, const ALL: bool>(bracket: &mut Bracket<'_, V>) -> Result<Ra
             Err(Stop::InDoubt | Stop::Touches(_)) => {}
             found => return found,
         }
-        if V::DIM == 3 && bracket.warm_start().is_some() {
+        if V::DIM == 3 && bracket.options.warm_start.is_some() {
             return Err(Stop::InDoubt);
         }
     }

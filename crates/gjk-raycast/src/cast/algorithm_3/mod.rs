@@ -55,7 +55,8 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
     let line = bracket.line();
     // The paper's v.
     let mut v = bracket.x();
-    let mut n = bracket.warm_start().and_then(|warm| warm.axis.unit()).or_else(|| v.unit()).unwrap_or(-line.direction);
+    let mut n =
+        bracket.options.warm_start.and_then(|warm| warm.axis.unit()).or_else(|| v.unit()).unwrap_or(-line.direction);
     let mut across = false;
     // The unit normal of the last plane along the line.
     let mut beside = None;

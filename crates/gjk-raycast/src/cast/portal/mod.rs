@@ -40,7 +40,7 @@ fn tilt<V: Vector>(bracket: &Bracket<'_, V>, error: V::Scalar) -> V::Scalar {
 pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     // The first plane: the one given, or the tangent plane of the ball about the body where the ray enters it; and how
     // far the next one is tilted.
-    let told = bracket.warm_start().and_then(|warm| Some((warm.axis.unit()?, tilt(bracket, warm.error()))));
+    let told = bracket.options.warm_start.and_then(|warm| Some((warm.axis.unit()?, tilt(bracket, warm.error()))));
     let (first, tilt) = told.unwrap_or_else(|| (bracket.x(), Scalar::ONE));
     let frame = RayFrame::new(bracket.line(), Scalar::ZERO);
     let curved = frame.is_curved(bracket.body, first);
