@@ -28,7 +28,7 @@ use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, S
 /// - A ray that meets the shape nowhere between [`min_lambda`](RayCastOptions::min_lambda) and
 ///   [`max_lambda`](RayCastOptions::max_lambda) is a miss.
 /// - A ray that ends in the shape is a hit at its end, with no normal.
-/// - The [`axis`](RayCastOptions::axis) of the options is a guess of the normal at the exit.
+/// - The [`warm_start`](RayCastOptions::warm_start) of the options is of the normal at the exit.
 ///
 /// # Errors
 /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.

@@ -3,8 +3,10 @@
 
 use crate::common::behind_pointers::linear_cast;
 use crate::common::{Quaternion, at, cuboid, directions, off, s, sweep, time, turned, ulps, v};
-use convex_support::glam::{DVec2, DVec3, Quat, Vec2, Vec3A};
-use convex_support::{Ball, Capsule, Cuboid, Cylinder, Point, Posed, Scalar, Segment, SupportMap, Triangle, Vector};
+use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3A};
+use convex_support::{
+    Ball, Capsule, Cone, Cuboid, Cylinder, Point, Posed, Scalar, Segment, SupportMap, Triangle, Vector,
+};
 use gjk_raycast::{CastMethod, LinearCast, LinearCastOptions, Motion, Outcome, Status};
 
 fn both(single: impl FnOnce(), double: impl FnOnce()) {
@@ -435,6 +437,28 @@ fn a_vertex_on_a_vertex_is_hit_where_it_is() {
         assert_eq!(cast.status == Status::Converged, cast.is_certain(), "{cast:?}");
         if let Outcome::Hit(hit) = cast.outcome {
             assert!((hit.time - time).abs() <= 1e-13, "{cast:?}");
+        }
+    }
+}
+
+/// A depth that is asked for no further than zero was taken for more than that by a facet a rounding beyond zero, which
+/// proves nothing: its normal, of a search that had hardly begun, counted as that of a touch. Of points deep in a
+/// cylinder or a cone 1 of 60 had one.
+#[test]
+fn a_start_deep_inside_has_no_normal() {
+    let cylinder = Cylinder::<DVec3>::new(0.9, 0.8).expect("valid");
+    let cone = Cone::<DVec3>::new(0.9, 0.8).expect("valid");
+    for i in 0..600_u32 {
+        let [x, y, z] = [7, 31, 101].map(|k| f64::from(i * k % 113) / 113.0 - 0.5);
+        let turn = DQuat::from_xyzw(0.3 + x, y, 0.5 - z, 0.7).normalize();
+        let point = Point::new(DVec3::new(0.3 * x, 0.4 * y - 0.1, 0.3 * z)).expect("valid");
+        let bodies: [&dyn SupportMap<Vector = DVec3>; 2] = [&cylinder, &cone];
+        for body in bodies {
+            let (a, b) = (turned(&point, turn, [2.0, -1.0, 0.5]), turned(body, turn, [2.0, -1.0, 0.5]));
+            let motion = Motion { velocity_a: DVec3::X, ..Motion::default() };
+            let cast = linear_cast(&a, &b, motion, LinearCastOptions::default()).expect("finite");
+            let hit = cast.outcome.hit().expect("it starts inside");
+            assert_eq!((hit.time, hit.normal, cast.upper), (0.0, None, 0.0), "{i}: {cast:?}");
         }
     }
 }

@@ -52,7 +52,7 @@ use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, WarmStart
 /// [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper) it is none, but that the bodies get deeper than they
 /// began, or touch again after they were apart: to step a world from contact to contact.
 ///
-/// Where neither body turns, the answer is that of [`linear_cast`].
+/// Where neither body turns, the answer is that of [`linear_cast`](crate::linear_cast).
 ///
 /// # Errors
 /// [`RayCastError::NonFinite`] if a number of a [`RigidMotion`] is not finite, the target distance is NaN or

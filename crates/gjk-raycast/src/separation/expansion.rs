@@ -114,7 +114,8 @@ pub(super) fn expand<V: Vector>(
                 Closing::Again => {}
             }
         }
-        if inner > depth_limit {
+        // Certainly so deep.
+        if inner - cores.greatest_error() > depth_limit {
             is_deep = true;
             break Status::Converged;
         }
