@@ -75,7 +75,7 @@ pub(crate) fn certain_closely<B: CastBody + ?Sized>(
         line = line.within(direction_error * reach);
     }
     // Of a ray that begins inside, plain numbers tell where its line enters, and a closer look takes longer than a
-    // search.
+    // search. In a loop, so that what is compiled into this is there once.
     let known = [false, true].into_iter().find_map(|is_close| body.certain_crossing(LineQuery { is_close, ..line }));
     let answer = certain(known?, ray, options)?;
     show(&answer, body, ray, observer);
