@@ -39,13 +39,13 @@ pub struct WarmStart<V: Vector> {
     turn: V,
     /// How far the axis may be off, as an angle.
     error: V::Scalar,
-    known: Known,
+    known: Learned,
 }
 
 /// What a warm start knows; each is more than the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-enum Known {
+enum Learned {
     /// A guess of the axis.
     Guess,
     /// The normal of a hit, which is the axis.
@@ -60,7 +60,7 @@ impl<V: Vector> WarmStart<V> {
     /// Nothing but an axis: a guess of the normal, or of a separating axis.
     #[must_use]
     pub const fn new(axis: V) -> Self {
-        Self { axis, turn: V::ZERO, error: V::Scalar::ZERO, known: Known::Guess }
+        Self { axis, turn: V::ZERO, error: V::Scalar::ZERO, known: Learned::Guess }
     }
 
     /// After a hit with this normal, found with what was told `before`.
@@ -69,25 +69,25 @@ impl<V: Vector> WarmStart<V> {
     /// to the square of that. But from face to face a normal jumps. So the last turn counts only if it was foretold by
     /// the one before, to within a half; and by how much it was not, the next one may be off.
     pub(crate) fn after(before: Option<Self>, normal: V) -> Self {
-        let first = Self { known: Known::Normal, ..Self::new(normal) };
+        let first = Self { known: Learned::Normal, ..Self::new(normal) };
         let last = |before: Self| match before.known {
-            Known::Guess => None,
-            Known::Normal | Known::Turn => Some(before.axis),
-            Known::Foretold => Some(before.axis - before.turn),
+            Learned::Guess => None,
+            Learned::Normal | Learned::Turn => Some(before.axis),
+            Learned::Foretold => Some(before.axis - before.turn),
         };
         let Some((before, last)) = before.and_then(|before| Some((before, last(before)?))) else { return first };
         let turn = normal - last;
         let (still, error) = (turn.norm(), (turn - before.turn).norm());
-        if before.known >= Known::Turn && error + error < still {
-            Self { axis: normal + turn, turn, error, known: Known::Foretold }
+        if before.known >= Learned::Turn && error + error < still {
+            Self { axis: normal + turn, turn, error, known: Learned::Foretold }
         } else {
-            Self { axis: normal, turn, error: still, known: Known::Turn }
+            Self { axis: normal, turn, error: still, known: Learned::Turn }
         }
     }
 
     /// How far the normal may be from the axis, as an angle.
     pub(crate) fn error(&self) -> V::Scalar {
-        if self.known >= Known::Turn { self.error } else { V::Scalar::from_f64(TURN) }
+        if self.known >= Learned::Turn { self.error } else { V::Scalar::from_f64(TURN) }
     }
 
     /// The same of the bodies in the other order.

@@ -108,7 +108,7 @@ where
 
 /// What a search does beyond looks at one time by GJK and at what was closest before.
 #[allow(clippy::type_complexity, reason = "it is said once")]
-pub(crate) struct Turning<V: Vector> {
+pub(crate) struct FullMotion<V: Vector> {
     pub(super) closer: &'static Closer<V>,
     /// The cast of bodies that do not turn.
     straight: fn(
@@ -125,7 +125,7 @@ pub(crate) struct Turning<V: Vector> {
     pub(super) have_met: fn(&MovingPair<'_, V>, &Instant<V>, V::Scalar) -> bool,
 }
 
-impl<V: Vector> Turning<V> {
+impl<V: Vector> FullMotion<V> {
     const TABLE: Self = Self {
         closer: &Closer::TABLE,
         straight: without_turning,
@@ -136,7 +136,7 @@ impl<V: Vector> Turning<V> {
     };
 }
 
-in_static!(Turning);
+in_static!(FullMotion);
 
 compiled_once! {
     /// The first contact of bodies that turn.

@@ -10,7 +10,7 @@ use super::approach::Approach;
 use super::boxes::{Block, FacetEdges};
 use super::corners::Corners;
 use super::instant::{Closeness, Instant, Limits};
-use super::motion_cast::Turning;
+use super::motion_cast::FullMotion;
 use super::moving_body::MovingBody;
 use super::options::MotionCastOptions;
 use super::placed::Placed;
@@ -25,7 +25,7 @@ use crate::{DistanceOptions, SignedDistanceOptions, distance};
 /// Two bodies and their motions.
 pub(super) struct MovingPair<'s, V: Vector> {
     pub(super) shapes: &'s dyn Shapes<Vector = V>,
-    extra: Extra<Turning<V>>,
+    extra: Extra<FullMotion<V>>,
     /// What was found of the shapes at the last time, which is mostly found again.
     pub(super) hints: Cell<[Hint; 2]>,
     pub(super) a: MovingBody<'s, V>,

@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::motion_cast::Turning;
+use super::motion_cast::FullMotion;
 use crate::StartInContact;
 use crate::extra::Extra;
 use crate::options::setters;
@@ -37,14 +37,14 @@ pub struct MotionCastOptions<V: Vector> {
     /// [`MotionCast::iterations`](crate::MotionCast::iterations) counts. Default: 10 000.
     pub max_iterations: usize,
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub(crate) extra: Extra<Turning<V>>,
+    pub(crate) extra: Extra<FullMotion<V>>,
 }
 
 impl<V: Vector> MotionCastOptions<V> {
     /// The default options.
     #[must_use]
     pub fn new() -> Self {
-        Self { extra: Turning::named(), ..Self::lean() }
+        Self { extra: FullMotion::named(), ..Self::lean() }
     }
 
     /// The default options, naming no more machine code than GJK, closed forms, and what was closest a moment ago: a
