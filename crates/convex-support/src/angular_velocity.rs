@@ -8,6 +8,7 @@ use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat2, Mat3, Mat3A, Quat, Vec2, Vec
 use crate::numerics::elementary::{atan2, sin_cos};
 use crate::numerics::range::comfortable_unit_of_length;
 use crate::numerics::twofold::{dot_minus, two_product};
+use crate::sealed::Sealed;
 use crate::{Scalar, Vector, Vector3};
 
 /// An angular velocity `ω` in the space of `V`, in radians per unit of time: a number in 2D, counterclockwise; in 3D a
@@ -15,7 +16,7 @@ use crate::{Scalar, Vector, Vector3};
 ///
 /// The trait is sealed; [`Vector::AngularVelocity`] says which type turns which vectors.
 pub trait AngularVelocity<V: Vector>:
-    Copy + Debug + Default + PartialEq + Send + Sync + 'static + sealed::Sealed + sealed::Data
+    Copy + Debug + Default + PartialEq + Send + Sync + 'static + Sealed + data::Data
 {
     /// A bound on the error of [`turn`](Self::turn) as an operator, relative to the square root of the sum of its
     /// squared entries and in units of the scalar's epsilon.
@@ -86,21 +87,12 @@ pub trait AngularVelocity<V: Vector>:
 ///     assert!((DVec3::X + spin.turn(time) * DVec3::X - to).length() < 1e-15);
 /// }
 /// ```
-pub trait Spin<V: Vector>: Copy + Debug + Send + Sync + 'static + sealed::Sealed {
+pub trait Spin<V: Vector>: Copy + Debug + Send + Sync + 'static + Sealed {
     /// What the rotation adds to a vector after `time`, as of [`AngularVelocity::turn`].
     fn turn(&self, time: V::Scalar) -> V::Matrix;
 }
 
-mod sealed {
-    // Sealed because `TURN_ERROR` is a promise that certified bounds rest on, and because methods will be added.
-    pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
-    impl Sealed for glam::Vec3 {}
-    impl Sealed for glam::Vec3A {}
-    impl Sealed for glam::DVec3 {}
-    impl<V> Sealed for super::SpinInSpace<V> {}
-
+mod data {
     /// What can be written and read where there is serde, so that no type that holds an angular velocity has to say so.
     #[cfg(feature = "serde")]
     pub trait Data: serde::Serialize + serde::de::DeserializeOwned {}

@@ -52,7 +52,7 @@ struct Round<S> {
 /// An ellipsoid.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Axes<V, M> {
+struct SemiAxes<V, M> {
     center: V,
     semi_axes: V,
     axes: M,
@@ -130,7 +130,7 @@ as_data! {
     [V: Vector] Capsule<V> as Round { half_height: half_height, radius: radius } by Self::new, where V::Scalar;
     [V: Vector3] Cylinder<V> as Round { half_height: half_height, radius: disc_radius } by Self::new, where V::Scalar;
     [V: Vector3] Cone<V> as Round { half_height: half_height, radius: disc_radius } by Self::new, where V::Scalar;
-    [V: Vector] Ellipsoid<V> as Axes { center: center, semi_axes: semi_axes, axes: axes } by Self::from_axes,
+    [V: Vector] Ellipsoid<V> as SemiAxes { center: center, semi_axes: semi_axes, axes: axes } by Self::from_axes,
         where V, V::Matrix;
     [S: SupportMap] Posed<S> as Moved { shape: shape, rotation: rotation, translation: translation } by Self::from_matrix,
         where S, S::Vector, <S::Vector as Vector>::Matrix;

@@ -89,6 +89,7 @@ pub mod numerics;
 mod parallelotope;
 mod rotation;
 mod scalar;
+mod sealed;
 mod shapes;
 #[cfg(feature = "proptest")]
 #[allow(clippy::disallowed_methods, reason = "random shapes need not be the same everywhere")]

@@ -8,12 +8,13 @@ use crate::Vector;
 use crate::error::InvalidShape;
 use crate::numerics::elementary::{atan2, sin_cos};
 use crate::numerics::range::is_comfortable;
+use crate::sealed::Sealed;
 
 /// A rotation of the space of `V`: an angle in radians in 2D, a quaternion of any length in 3D.
 ///
 /// What it stands for is exact: the sine and cosine of the angle, and the quaternion divided by its length.
 /// The trait is sealed; [`Vector::Rotation`] says which type rotates which vectors.
-pub trait Rotation<V: Vector>: Copy + Debug + Default + PartialEq + Send + Sync + 'static + sealed::Sealed {
+pub trait Rotation<V: Vector>: Copy + Debug + Default + PartialEq + Send + Sync + 'static + Sealed {
     /// A bound on the rounding error of each entry of [`matrix`](Self::matrix), in units of the scalar's epsilon.
     const MATRIX_ERROR: f64;
 
@@ -33,15 +34,6 @@ pub trait Rotation<V: Vector>: Copy + Debug + Default + PartialEq + Send + Sync 
     /// [`InvalidShape::NonFinite`] naming the number that is not finite, [`InvalidShape::ZeroRotation`] for the zero
     /// quaternion.
     fn checked(self, parameter: &'static str) -> Result<Self, InvalidShape>;
-}
-
-mod sealed {
-    // Sealed because `MATRIX_ERROR` is a promise that certified bounds rest on, and because methods will be added.
-    pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
-    impl Sealed for glam::Quat {}
-    impl Sealed for glam::DQuat {}
 }
 
 /// Rotations of the plane, whose sines and cosines are right to less than an ulp.

@@ -2,6 +2,8 @@
 
 use core::fmt::{Debug, Display};
 
+use crate::sealed::Sealed;
+
 /// A floating-point number: `f32` or `f64`.
 ///
 /// Arithmetic and functions come from [`num_traits::Float`]; this trait adds what generic geometry needs beside
@@ -11,7 +13,7 @@ use core::fmt::{Debug, Display};
     note = "the scalars are `f32` and `f64`"
 )]
 pub trait Scalar:
-    num_traits::Float + num_traits::NumAssign + Debug + Display + Default + Send + Sync + 'static + sealed::Sealed
+    num_traits::Float + num_traits::NumAssign + Debug + Display + Default + Send + Sync + 'static + Sealed
 {
     /// Zero.
     const ZERO: Self;
@@ -58,11 +60,4 @@ impl Scalar for f64 {
     fn as_f64(self) -> f64 {
         self
     }
-}
-
-mod sealed {
-    // Sealed because generic code here relies on IEEE-754 arithmetic, and because methods will be added.
-    pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
 }

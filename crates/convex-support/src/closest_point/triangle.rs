@@ -1,12 +1,13 @@
 //! The point of a triangle nearest a given point.
 
-use crate::shapes::{Frame, clamp_to_segment};
+use crate::shapes::{PlanarTriangle, clamp_to_segment};
 use crate::{Scalar, Triangle, Vector};
 
 /// Outside, the answer is the foot on an edge that has the point on its outer side, or else a corner. Comparing the
 /// distances of all three edges instead would lose half the digits, since a distance is flat at its minimum.
 pub(crate) fn closest_of_triangle<V: Vector>(triangle: &Triangle<V>, x: V) -> V {
-    let Some(Frame { corners: [a, b, c], axes: [u, v], length, along, height }) = triangle.frame() else {
+    let Some(PlanarTriangle { corners: [a, b, c], axes: [u, v], length, along, height }) = triangle.in_its_plane()
+    else {
         let [a, b, _] = triangle.longest_edge_first();
         return clamp_to_segment([a, b], x);
     };

@@ -212,8 +212,8 @@ compiled_once! {
         error: <V as Vector>::Scalar,
     ) -> () {
         #[derive(Clone, Copy)]
-        struct Ball<S>(S);
-        impl<V: Vector> EachLine<V> for Ball<V::Scalar> {
+        struct NearBall<S>(S);
+        impl<V: Vector> EachLine<V> for NearBall<V::Scalar> {
             #[inline(always)]
             fn holds(&self) -> bool {
                 self.0 > V::Scalar::ZERO
@@ -227,7 +227,7 @@ compiled_once! {
         }
         lines.known = [V::Scalar::ZERO; LINES];
         approach(lines, numbers(center), radius, error);
-        each::<V::Numbers>(lines, Ball(radius));
+        each::<V::Numbers>(lines, NearBall(radius));
     }
 }
 
@@ -239,8 +239,8 @@ compiled_once! {
         size: <V as Vector>::Scalar,
     ) -> () {
         #[derive(Clone, Copy)]
-        struct Cuboid<V: Vector>(V, V::Scalar);
-        impl<V: Vector> EachLine<V> for Cuboid<V> {
+        struct NearCuboid<V: Vector>(V, V::Scalar);
+        impl<V: Vector> EachLine<V> for NearCuboid<V> {
             #[inline(always)]
             fn call(&self, lines: &mut Lines<V::Scalar>, line: usize) {
                 let known = lines.near::<V>(line, self.1).cuboid(self.0);
@@ -248,7 +248,7 @@ compiled_once! {
             }
         }
         approach(lines, V::Numbers::ZERO, size, Scalar::ZERO);
-        each(lines, Cuboid(numbers(half_extents), size));
+        each(lines, NearCuboid(numbers(half_extents), size));
     }
 }
 
@@ -377,8 +377,8 @@ compiled_once! {
         size: <V as Vector>::Scalar,
         error: <V as Vector>::Scalar,
     ) -> () {
-        struct Hull<'a, V: Vector>(&'a mut Lines<V::Scalar>, &'a [Planes<V::Scalar>], V::Scalar);
-        impl<V: Vector> Loop for Hull<'_, V> {
+        struct ClippedByHull<'a, V: Vector>(&'a mut Lines<V::Scalar>, &'a [Planes<V::Scalar>], V::Scalar);
+        impl<V: Vector> Loop for ClippedByHull<'_, V> {
             #[inline(always)]
             fn run(self) {
                 let Self(lines, planes, size) = self;
@@ -407,6 +407,6 @@ compiled_once! {
             }
         }
         approach(lines, numbers(origin), size, error);
-        widest(Hull::<V::Numbers>(lines, planes, size));
+        widest(ClippedByHull::<V::Numbers>(lines, planes, size));
     }
 }

@@ -7,8 +7,8 @@ use crate::{Scalar, Vector};
 
 /// The squared distance from a box is `φ(λ) = Σ max(|xᵢ| − hᵢ, 0)²` along the line: convex, and one quadratic between
 /// any two neighbouring crossings of the planes `xᵢ = ±hᵢ`. The line enters the rounded box where `φ` falls to
-/// `radius²`, and not before it enters the box of half extents `hᵢ + radius`: from there, piece after piece is
-/// searched. Most lines enter through one of the flat sides, in the first piece. They leave where the reversed line
+/// `radius²`, and not before it enters the box of half extents `hᵢ + radius`: from there, part after part is
+/// searched. Most lines enter through one of the flat sides, in the first part. They leave where the reversed line
 /// enters.
 #[inline]
 pub(crate) fn rounded_cuboid<V: Vector>(h: V, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
@@ -57,9 +57,9 @@ impl<V: Vector> Line<V> {
     #[inline(always)]
     fn entry(&self, radius: V::Scalar, begin: V::Scalar, end: V::Scalar) -> Result<V::Scalar, V> {
         let (mut lambda, mut nearest) = (begin, None);
-        // Each coordinate changes its piece at most twice.
+        // Each coordinate changes its part at most twice.
         for _ in 0..=2 * V::DIM {
-            let Piece { outside, speed, beyond, next } = self.piece(lambda);
+            let QuadraticPart { outside, speed, beyond, next } = self.part_from(lambda);
             let dd = speed.length_squared();
             if beyond == 0 {
                 return Ok(lambda);
@@ -71,7 +71,7 @@ impl<V: Vector> Line<V> {
             let recip = dd.recip();
             let middle = -outside.dot(speed) * recip;
             let chord = Chord::about(middle, outside + speed * middle, recip, radius);
-            // The distance is least where a piece is nearest the box before it ends.
+            // The distance is least where a part is nearest the box before it ends.
             nearest = if (lambda <= middle) & (middle <= next) { Some(chord.nearest) } else { nearest };
             let (enters, leaves) = chord.ends();
             if dd == V::Scalar::ZERO {
@@ -98,7 +98,7 @@ impl<V: Vector> Line<V> {
     fn nearest(&self) -> V {
         let mut lambda = -V::Scalar::infinity();
         for _ in 0..=2 * V::DIM {
-            let Piece { outside, speed, next, .. } = self.piece(lambda);
+            let QuadraticPart { outside, speed, next, .. } = self.part_from(lambda);
             let middle = -outside.dot(speed) / speed.length_squared();
             if middle <= next {
                 return outside + speed * middle;
@@ -108,9 +108,9 @@ impl<V: Vector> Line<V> {
         V::ZERO
     }
 
-    /// The piece from a parameter on.
+    /// The part from a parameter on.
     #[inline(always)]
-    fn piece(&self, lambda: V::Scalar) -> Piece<V> {
+    fn part_from(&self, lambda: V::Scalar) -> QuadraticPart<V> {
         let (mut outside, mut speed, mut beyond, mut next) = (V::ZERO, V::ZERO, 0, V::Scalar::infinity());
         for i in 0..V::DIM {
             let (enters, leaves) = (self.enters.get(i), self.leaves.get(i));
@@ -124,18 +124,18 @@ impl<V: Vector> Line<V> {
             let change = if before { enters } else { leaves };
             next = if (lambda < change) & (change < next) { change } else { next };
         }
-        Piece { outside, speed, beyond, next }
+        QuadraticPart { outside, speed, beyond, next }
     }
 }
 
 /// A part of a line in which its distance from a box is one quadratic.
-struct Piece<V: Vector> {
+struct QuadraticPart<V: Vector> {
     /// By how much the line is outside of the box, at its source.
     outside: V,
     /// How fast that changes.
     speed: V,
     /// In how many coordinates it is outside.
     beyond: usize,
-    /// Where the piece ends.
+    /// Where the part ends.
     next: V::Scalar,
 }

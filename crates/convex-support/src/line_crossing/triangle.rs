@@ -4,7 +4,7 @@ use num_traits::Float as _;
 
 use super::{CertainCrossing, Crossed, Crossing, NearLine, Spine, comfortable, rebased};
 use crate::closest_point::closest_of_triangle;
-use crate::shapes::Frame;
+use crate::shapes::PlanarTriangle;
 use crate::{Scalar, Triangle, Vector};
 
 /// The prism over the triangle, as thick as the ball, and the three edges swept by the ball: their union is convex, so
@@ -77,7 +77,7 @@ impl<V: Vector> Triangle<V> {
     /// it is so where it crosses more than `e/s` inside of them; and a point of the moved triangle is no farther than
     /// `e` from the plane, which the line leaves behind by as much after `e/s`.
     fn prism_crossing(&self, radius: V::Scalar, error: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
-        let Frame { corners: [a, b, _], axes: [u, v], length, along, height } = self.frame()?;
+        let PlanarTriangle { corners: [a, b, _], axes: [u, v], length, along, height } = self.in_its_plane()?;
         let (base, from_a) = rebased(source - a, direction, direction.length_squared().recip());
         let zero = V::Scalar::ZERO;
         let mut clip = Clip::default();
@@ -121,7 +121,7 @@ impl<V: Vector> NearLine<V> {
             let entry = latest + error / falls;
             return (earliest <= entry).then(|| self.enters([earliest, entry, latest], normal));
         }
-        let Frame { corners: [a, b, c], axes: [u, v], .. } = corners.frame()?;
+        let PlanarTriangle { corners: [a, b, c], axes: [u, v], .. } = corners.in_its_plane()?;
         let across = |e: V| u * v.dot(e) - v * u.dot(e);
         [b - a, c - b, a - c].into_iter().find_map(|side| {
             // Out of the triangle within its plane, and as much across the plane as takes it across the line.

@@ -16,7 +16,7 @@ pub(crate) use cylinder::across;
 #[cfg(feature = "hull")]
 pub(crate) use polytope::{PLANES, Planes, facet};
 pub(crate) use segment::clamp_to_segment;
-pub(crate) use triangle::Frame;
+pub(crate) use triangle::PlanarTriangle;
 
 pub use ball::Ball;
 pub use capsule::Capsule;

@@ -49,7 +49,7 @@ impl<V: Vector> Triangle<V> {
 /// `(along, height)`, so that `0 ≤ along ≤ length`.
 ///
 /// Signs of areas in these coordinates tell inside from outside without the cancellation of Gram determinants.
-pub(crate) struct Frame<V: Vector> {
+pub(crate) struct PlanarTriangle<V: Vector> {
     /// The corners, those of the longest edge first.
     pub(crate) corners: [V; 3],
     /// Unit vectors along the longest edge and up to the third corner.
@@ -61,7 +61,7 @@ pub(crate) struct Frame<V: Vector> {
 
 impl<V: Vector> Triangle<V> {
     /// `None` where the triangle is a segment or a point.
-    pub(crate) fn frame(&self) -> Option<Frame<V>> {
+    pub(crate) fn in_its_plane(&self) -> Option<PlanarTriangle<V>> {
         let [a, b, c] = self.longest_edge_first();
         let u = (b - a).unit()?;
         let along = u.dot(c - a);
@@ -69,7 +69,7 @@ impl<V: Vector> Triangle<V> {
         // Once more, since `up` may be small beside what was subtracted.
         let up = up - u * u.dot(up);
         let v = up.unit()?;
-        Some(Frame { corners: [a, b, c], axes: [u, v], length: u.dot(b - a), along, height: v.dot(up) })
+        Some(PlanarTriangle { corners: [a, b, c], axes: [u, v], length: u.dot(b - a), along, height: v.dot(up) })
     }
 
     /// The corners in the same cyclic order, the longest edge between the first two.

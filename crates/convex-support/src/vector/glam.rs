@@ -4,7 +4,8 @@
 
 use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat2, Mat3, Mat3A, Quat, Vec2, Vec3, Vec3A, Vec3Swizzles as _};
 
-use super::{Matrix, Vector, Vector3, sealed};
+use super::{Matrix, Vector, Vector3};
+use crate::sealed::Sealed;
 
 /// Forwards [`Vector`] and [`Matrix`] to a vector of glam and to the matrix that acts on it.
 macro_rules! glam_vector {
@@ -16,8 +17,8 @@ macro_rules! glam_vector {
         matrix: $M:ident of $space:ident,
         numbers: $N:ident $(,)?
     }) => {
-        impl sealed::Sealed for $V {}
-        impl sealed::Sealed for $M {}
+        impl Sealed for $V {}
+        impl Sealed for $M {}
 
         impl Vector for $V {
             type Scalar = $S;

@@ -3,8 +3,8 @@
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Sub};
 
-use super::sealed;
 use crate::Vector;
+use crate::sealed::Sealed;
 
 /// A square matrix acting on [`Vector`]s by `matrix * vector`.
 pub trait Matrix:
@@ -19,7 +19,7 @@ pub trait Matrix:
     + Send
     + Sync
     + 'static
-    + sealed::Sealed
+    + Sealed
 {
     /// The vectors it acts on.
     type Vector: Vector<Matrix = Self>;

@@ -11,6 +11,7 @@ use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use crate::numerics::range::{is_comfortable, scaled};
+use crate::sealed::Sealed;
 use crate::{AngularVelocity, Rotation, Scalar};
 
 /// A vector of 2D or 3D space: glam's `Vec2`, `Vec3`, `Vec3A`, `DVec2` or `DVec3`.
@@ -41,7 +42,7 @@ pub trait Vector:
     + Send
     + Sync
     + 'static
-    + sealed::Sealed
+    + Sealed
 {
     /// The type of the coordinates.
     type Scalar: Scalar;
@@ -150,11 +151,6 @@ pub trait Vector:
 pub trait Vector3: Vector {
     /// The cross product.
     fn cross(self, rhs: Self) -> Self;
-}
-
-mod sealed {
-    // Sealed because algorithms rely on these being plain Euclidean vectors, and because methods will be added.
-    pub trait Sealed {}
 }
 
 #[cfg(test)]

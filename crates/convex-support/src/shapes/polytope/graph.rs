@@ -175,7 +175,14 @@ impl<V: Vector> Graph<V> {
     ///
     /// As the direction moves through the cone, the farthest vertex passes along edges, over vertices that are farthest
     /// too: they are connected. And such a vertex is farther than its neighbours somewhere in the cone.
-    fn collect(&self, cone: &Cone<V>, farthest: u32, cell: u32, seen_by: &mut [u32], found: &mut Vec<u32>) -> bool {
+    fn collect(
+        &self,
+        cone: &DirectionCone<V>,
+        farthest: u32,
+        cell: u32,
+        seen_by: &mut [u32],
+        found: &mut Vec<u32>,
+    ) -> bool {
         found.clear();
         found.push(farthest);
         seen_by[farthest as usize] = cell;
@@ -340,7 +347,7 @@ impl<V: Vector> Graph<V> {
     }
 
     /// The directions of a cell, seen by the polytope as it is.
-    fn cone(&self, mut cell: usize) -> Cone<V> {
+    fn cone(&self, mut cell: usize) -> DirectionCone<V> {
         let width = 1.0 / self.resolution as f64;
         let mut places = [0.0; 2];
         for i in (0..V::DIM - 1).rev() {
@@ -356,7 +363,7 @@ impl<V: Vector> Graph<V> {
                     * (thinnest / self.sizes.get(i))
             })
         };
-        Cone {
+        DirectionCone {
             middle: stretched(sign, &|i| places[i]),
             spread: stretched(0.0, &|_| width),
             // Each of three products d·v is at most 1 in the stretched cube. The reaches that are compared later, and
@@ -379,13 +386,13 @@ fn whole_part(x: f64) -> usize {
 }
 
 /// The directions `d` with `|d − middle| ≤ spread`, coordinate by coordinate.
-struct Cone<V: Vector> {
+struct DirectionCone<V: Vector> {
     middle: V,
     spread: V,
     rounding: V::Scalar,
 }
 
-impl<V: Vector> Cone<V> {
+impl<V: Vector> DirectionCone<V> {
     /// Whether `v` can come out as far as `u` along some direction of the cone, rounding included.
     fn can_be_farther(&self, v: V, u: V) -> bool {
         let difference = v - u;
@@ -402,7 +409,7 @@ mod tests {
     fn cells_know_their_middles<V: Vector>(vertices: usize, size: V) {
         let graph = Graph::new(&vec![size; vertices], &[]);
         for cell in 0..graph.cells.len() {
-            let Cone { middle, .. } = graph.cone(cell);
+            let DirectionCone { middle, .. } = graph.cone(cell);
             assert_eq!(graph.cell(middle), cell, "{middle:?}");
         }
     }
