@@ -63,11 +63,16 @@ enum Task {
     ///
     /// Exit status: 0, or 1 if a note or page has a link that leads nowhere, or 2 if the documentation does not build.
     Docs,
-    /// Measure what importing each crate alone costs, and write the table of `docs/choosing-a-method.md`: packages, build time, code size.
+    /// Measure what importing each crate alone costs, and write the table of `docs/choosing-a-method.md`: packages,
+    /// build time, code size.
     Footprint {
         /// Where the programs are built; emptied first.
         #[arg(long, value_name = "FOLDER", default_value = "target/footprint")]
         output: PathBuf,
+        /// Measure what one question costs a Cortex-M4 instead: code, stack, memory and instructions. Needs
+        /// `rustup target add thumbv7em-none-eabihf` and `qemu-system-arm`.
+        #[arg(long)]
+        microcontroller: bool,
     },
     /// Move a robot along its trajectory among obstacles (a study).
     #[command(disable_help_flag = true)]
@@ -110,7 +115,7 @@ fn main() -> ExitCode {
         Task::Bits(choice) => bits::run(&choice),
         Task::Museum(choice) => museum::run(choice),
         Task::Docs => docs::run(),
-        Task::Footprint { output } => footprint::run(&output),
+        Task::Footprint { output, microcontroller } => footprint::run(&output, microcontroller),
         Task::Judge(_) | Task::Growth(_) => study("peers"),
         Task::Scene(_) | Task::Matrix(_) | Task::Sweep(_) | Task::Book2d(_) | Task::Render(_) => study(""),
     }

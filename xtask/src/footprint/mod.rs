@@ -1,10 +1,12 @@
 //! `cargo xtask footprint`: what importing each crate alone costs. Packages in the tree, time of a clean build, and the
 //! code of a program that asks one question, beside a program that asks none.
 
+mod microcontroller;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use workloads::note;
 use workloads::provenance::provenance;
@@ -167,13 +169,15 @@ struct Cost {
     bytes: u64,
 }
 
-/// Builds the programs in `folder`, prints the table, and puts it into `docs/choosing-a-method.md`.
-pub fn run(folder: &Path) -> ExitCode {
-    let written = measure(folder).and_then(|table| {
+/// Builds the programs in `folder`, prints their table, and puts it into `docs/choosing-a-method.md`.
+pub fn run(folder: &Path, for_microcontroller: bool) -> ExitCode {
+    let (name, measure): (_, fn(&Path) -> _) =
+        if for_microcontroller { ("microcontroller", microcontroller::measure) } else { ("footprint", measure) };
+    let written = emptied(folder).and_then(|folder| measure(&folder)).and_then(|table| {
         let _ = io::stdout().write_all(table.as_bytes());
         let part = format!("{table}\nMeasured on {}.", provenance());
         let note = note::path("choosing-a-method.md");
-        note::write(&note, "footprint", &part).map_err(|why| format!("cannot write {}: {why}", note.display()))
+        note::write(&note, name, &part).map_err(|why| format!("cannot write {}: {why}", note.display()))
     });
     match written {
         Ok(()) => ExitCode::SUCCESS,
@@ -184,19 +188,22 @@ pub fn run(folder: &Path) -> ExitCode {
     }
 }
 
-fn measure(folder: &Path) -> Result<String, String> {
+fn emptied(folder: &Path) -> Result<PathBuf, String> {
     let failed = |why: io::Error| format!("cannot build in {}: {why}", folder.display());
     if folder.exists() {
         fs::remove_dir_all(folder).map_err(failed)?;
     }
     fs::create_dir_all(folder).map_err(failed)?;
-    let folder = folder.canonicalize().map_err(failed)?;
+    folder.canonicalize().map_err(failed)
+}
+
+fn measure(folder: &Path) -> Result<String, String> {
     let mut table = String::from(
         "| program that asks one question | packages | clean build (processor time) | code |\n|---|---:|---:|---:|\n",
     );
     let mut nothing = 0;
     for program in PROGRAMS {
-        let cost = build(program, &folder)?;
+        let cost = build(program, folder)?;
         if program.import.is_none() {
             nothing = cost.bytes;
         }
@@ -213,45 +220,62 @@ fn measure(folder: &Path) -> Result<String, String> {
 }
 
 fn build(program: &Program, folder: &Path) -> Result<Cost, String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
-    let here = folder.join(program.name.replace(", ", "-").replace('`', ""));
     let failed = |why: io::Error| format!("cannot build {}: {why}", program.name);
-    let import = program.import.map_or_else(String::new, |(name, features)| {
-        let path = root.join("crates").join(name);
-        format!("{name} = {{ path = {path:?}, default-features = false, features = [{features}] }}\n")
-    });
-    let manifest = format!(
-        "[package]\nname = \"program\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n[dependencies]\n{import}\
-         [profile.release]\nlto = true\ncodegen-units = 1\nstrip = true\npanic = \"abort\"\n"
-    );
     let source = format!(
         "fn input() -> f64 {{ std::env::args().count() as f64 }}\nfn main() {{\n{}\n}}\n",
         program.body.concat()
     );
-    fs::create_dir_all(here.join("src")).map_err(failed)?;
-    fs::write(here.join("Cargo.toml"), manifest).map_err(failed)?;
-    fs::write(here.join("src/main.rs"), source).map_err(failed)?;
-    // The versions of the workspace, so that nothing new is fetched.
-    fs::copy(root.join("Cargo.lock"), here.join("Cargo.lock")).map_err(failed)?;
-
-    let cargo = |arguments: &[&str]| {
-        let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-        // Not the target folder of whoever runs this: the build must be a clean one.
-        command.args(arguments).current_dir(&here).env("CARGO_TARGET_DIR", here.join("target"));
-        let output = command.output().map_err(failed)?;
-        if output.status.success() {
-            Ok(String::from_utf8_lossy(&output.stdout).into_owned())
-        } else {
-            Err(format!("cannot build {}: {}", program.name, String::from_utf8_lossy(&output.stderr)))
-        }
-    };
-    let tree = cargo(&["tree", "--quiet", "--edges", "normal", "--prefix", "none", "--format", "{p}"])?;
+    let here = write_program(folder, program.name, program.import, "", &source).map_err(failed)?;
+    let tree = cargo(
+        &here,
+        &here.join("target"),
+        &["tree", "--quiet", "--edges", "normal", "--prefix", "none", "--format", "{p}"],
+    )?;
     // The program itself does not count.
     let packages: BTreeSet<&str> = tree.lines().filter(|line| !line.starts_with("program ")).collect();
     let seconds = processor_time(&here)?;
     let binary = here.join("target/release").join(format!("program{}", std::env::consts::EXE_SUFFIX));
     let bytes = fs::metadata(binary).map_err(failed)?.len();
     Ok(Cost { packages: packages.len(), seconds, bytes })
+}
+
+/// Writes a program that imports a crate with some features, and `others`; its folder.
+fn write_program(
+    folder: &Path,
+    name: &str,
+    import: Option<(&str, &str)>,
+    others: &str,
+    source: &str,
+) -> io::Result<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
+    let here = folder.join(name.replace([',', '`'], "").replace(' ', "-"));
+    let import = import.map_or_else(String::new, |(name, features)| {
+        let path = root.join("crates").join(name);
+        format!("{name} = {{ path = {path:?}, default-features = false, features = [{features}] }}\n")
+    });
+    let manifest = format!(
+        "[package]\nname = \"program\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n[dependencies]\n\
+         {import}{others}[profile.release]\nlto = true\ncodegen-units = 1\nstrip = true\npanic = \"abort\"\n"
+    );
+    fs::create_dir_all(here.join("src"))?;
+    fs::write(here.join("Cargo.toml"), manifest)?;
+    fs::write(here.join("src/main.rs"), source)?;
+    // The versions of the workspace, so that nothing new of these is fetched.
+    fs::copy(root.join("Cargo.lock"), here.join("Cargo.lock"))?;
+    Ok(here)
+}
+
+/// What `cargo` says of the program in `folder`. It is built in a `target` of its own and not in that of whoever runs
+/// this.
+fn cargo(folder: &Path, target: &Path, arguments: &[&str]) -> Result<String, String> {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments).current_dir(folder).env("CARGO_TARGET_DIR", target);
+    let output = command.output().map_err(|why| format!("cannot build in {}: {why}", folder.display()))?;
+    if output.status.success() {
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    } else {
+        Err(format!("cannot build in {}: {}", folder.display(), String::from_utf8_lossy(&output.stderr)))
+    }
 }
 
 /// Builds the program in `folder`, and says how many seconds of processor time that took: the shell knows it of its
