@@ -8,20 +8,20 @@
 use gjk_raycast::convex_support::glam::{DQuat, DVec3};
 use gjk_raycast::convex_support::{Capsule, Cylinder, Posed};
 use gjk_raycast::{
-    MotionCastGradient, MotionCastOptions, MotionHit, RigidMotion, RigidMotionGradient, Smoothness, motion_cast,
+    Impact, ImpactGradient, MotionCastOptions, RigidMotion, RigidMotionGradient, Smoothness, motion_cast,
 };
 
 type Error = Box<dyn std::error::Error>;
 
 /// The first contact of a throw, how its time changes with poses, and with the velocities of the throw.
-struct Impact {
-    hit: MotionHit<DVec3>,
-    gradient: MotionCastGradient<DVec3>,
+struct Catch {
+    hit: Impact<DVec3>,
+    gradient: ImpactGradient<DVec3>,
     by_throw: RigidMotionGradient<DVec3>,
     smoothness: Smoothness,
 }
 
-fn impact(throw: RigidMotion<DVec3>) -> Result<Impact, Error> {
+fn caught(throw: RigidMotion<DVec3>) -> Result<Catch, Error> {
     let stick = Posed::new(Capsule::new(0.3, 0.02)?, DQuat::from_rotation_x(0.3), throw.center)?;
     let plate = Posed::new(Cylinder::new(0.01, 0.5)?, DQuat::from_rotation_z(1.4), DVec3::new(4.0, 0.2, 0.0))?;
     let drift = RigidMotion {
@@ -34,7 +34,7 @@ fn impact(throw: RigidMotion<DVec3>) -> Result<Impact, Error> {
     let features = hit.closest_features(&stick, &throw, &plate, &drift).ok_or("it starts apart")?;
     let gradient = hit.refined(&features).gradient(&throw, &drift).ok_or("it comes nearer")?;
     let by_throw = throw.gradient(hit.time, gradient.contact_a);
-    Ok(Impact { hit, gradient, by_throw, smoothness: features.smoothness() })
+    Ok(Catch { hit, gradient, by_throw, smoothness: features.smoothness() })
 }
 
 fn main() -> Result<(), Error> {
@@ -43,7 +43,7 @@ fn main() -> Result<(), Error> {
         angular_velocity: DVec3::new(0.5, 2.0, 6.0),
         center: DVec3::ZERO,
     };
-    let Impact { hit, gradient, by_throw, smoothness } = impact(throw)?;
+    let Catch { hit, gradient, by_throw, smoothness } = caught(throw)?;
     assert_eq!(smoothness, Smoothness::Smooth, "nothing of them is parallel when they meet");
     println!("it hits after {:.6} s, at {:.3}", hit.time, hit.point);
     println!(
@@ -55,7 +55,7 @@ fn main() -> Result<(), Error> {
     // As differences say.
     let time = |velocity: DVec3, spin: DVec3| -> Result<f64, Error> {
         let (velocity, angular_velocity) = (throw.velocity + velocity, throw.angular_velocity + spin);
-        Ok(impact(RigidMotion { velocity, angular_velocity, ..throw })?.hit.time)
+        Ok(caught(RigidMotion { velocity, angular_velocity, ..throw })?.hit.time)
     };
     let h = 1e-5;
     for axis in DVec3::AXES {
@@ -73,7 +73,7 @@ fn main() -> Result<(), Error> {
     let mut fitting = throw;
     let mut steps = 0;
     loop {
-        let Impact { hit, by_throw, .. } = impact(fitting)?;
+        let Catch { hit, by_throw, .. } = caught(fitting)?;
         let early = 0.5 - hit.time;
         let forward = fitting.velocity.normalize();
         println!("at {:.6} m/s after {:.12} s", fitting.velocity.length(), hit.time);
@@ -84,6 +84,6 @@ fn main() -> Result<(), Error> {
         steps += 1;
     }
     assert!(steps <= 6, "{steps} steps: it doubles its digits");
-    assert!((impact(fitting)?.hit.time - 0.5).abs() < 1e-12, "just on time");
+    assert!((caught(fitting)?.hit.time - 0.5).abs() < 1e-12, "just on time");
     Ok(())
 }

@@ -52,7 +52,7 @@
 //!
 //! About an answer:
 //! - *How does it change with a pose, a joint, a velocity?* `gradient` of [`Distance`], [`SignedDistance`],
-//!   [`LinearHit`], [`MotionHit`] and [`RayHit`]. [`ClosestFeatures`] tells whether that derivative is unique, and has
+//!   [`Impact`] and [`RayHit`]. [`ClosestFeatures`] tells whether that derivative is unique, and has
 //!   second derivatives.
 //! - *What proves it?* [`distance_certificate`] and its like: a [`Certificate`] for a checker that trusts nothing else.
 //!
@@ -177,8 +177,8 @@ pub use certificate::{
 };
 pub use contact::{Contact, ContactPoint, contact, contact_after};
 pub use derivative::{
-    ClosestFeatures, ClosestVelocities, LinearCastGradient, MotionCastGradient, PairGradient, PairHessian,
-    RayCastGradient, RigidMotionGradient, Smoothness,
+    ClosestFeatures, ClosestVelocities, ImpactGradient, PairGradient, PairHessian, RayCastGradient,
+    RigidMotionGradient, Smoothness,
 };
 pub use distance::{distance, distance_with};
 pub use distances::map_distances_into;
@@ -193,8 +193,8 @@ pub use linkage::{
     Met, Path, PathContact, PathOutcome, PathStop, PathWork, PathWorkspace,
 };
 pub use motion::{
-    ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionHit, MotionIterate, MovingBall, Pose, RigidMotion,
-    Trajectory, TurningPlane, motion_cast, motion_cast_with,
+    ChainMotion, Displacement, MotionCastOptions, MotionIterate, MovingBall, Pose, RigidMotion, Trajectory,
+    TurningPlane, motion_cast, motion_cast_with,
 };
 pub use options::{
     CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, RayCastOptions, SignedDistanceOptions,
@@ -208,8 +208,8 @@ pub use ray_casts::ray_casts;
 pub use ray_entries::{RayEntry, ray_entries_into};
 pub use ray_exit::ray_exit;
 pub use result::{
-    Distance, Intersection, Iterate, LinearCast, LinearHit, Miss, Outcome, RayCast, RayExit, RayHit, SignedDistance,
-    Status,
+    Cast, Distance, Impact, Intersection, Iterate, LinearCast, Miss, MotionCast, Outcome, RayCast, RayExit, RayHit,
+    SignedDistance, Status,
 };
 pub use scene::{
     Among, Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, Scene, SceneAnyHit,

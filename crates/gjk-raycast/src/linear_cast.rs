@@ -11,7 +11,7 @@ use crate::observer::Observer;
 use crate::shape::Shape;
 use crate::start_in_contact::{InContact, StartingPair};
 use crate::{
-    Iterate, LinearCast, LinearCastOptions, LinearHit, Miss, Motion, Outcome, Ray, RayCastError, RayCastOptions,
+    Impact, Iterate, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCastError, RayCastOptions,
     StartInContact, Status, WarmStart,
 };
 
@@ -215,7 +215,7 @@ fn answer<V: Vector>(
         Outcome::Undecided => Outcome::Undecided,
     };
     // Where only deeper motions count, what is known of the start is looked for below.
-    if let Outcome::Hit(LinearHit { time, normal: None, .. }) = answer.outcome
+    if let Outcome::Hit(Impact { time, normal: None, .. }) = answer.outcome
         && time == zero
         && options.start_in_contact == StartInContact::Report
         && let Some(extra) = options.extra.get()
@@ -250,7 +250,7 @@ fn touch_at_start<V: Vector>(answer: &mut LinearCast<V>, start: &StartingPair<'_
         // They are certainly deeper than touching, whatever the motion.
         answer.upper = zero;
     }
-    answer.outcome = Outcome::Hit(LinearHit { time: zero, point: at_start.point_b, normal });
+    answer.outcome = Outcome::Hit(Impact { time: zero, point: at_start.point_b, normal });
 }
 
 /// The ray that `b` draws as it is seen from `a`, what its direction is wrong by as a part of its length, and what is
@@ -294,13 +294,13 @@ fn hit_on_the_way<V: Vector>(
     scale: V::Scalar,
     [core_a, core_b]: [Core<V>; 2],
     velocity_b: V,
-) -> LinearHit<V> {
+) -> Impact<V> {
     let &CastHit { lambda: time, normal, spot, witness: PointPair { a: p, b: q } } = hit;
     let between = (q - p + spot) * scale;
     let zero = V::Scalar::ZERO;
     let share = if core_b.radius > zero { core_b.radius / (core_a.radius + core_b.radius) } else { zero };
     let at_start = core_b.origin + q * scale;
-    LinearHit { time, point: at_start + velocity_b * time - between * share, normal: normal.map(|n| -n) }
+    Impact { time, point: at_start + velocity_b * time - between * share, normal: normal.map(|n| -n) }
 }
 
 /// What is to be answered where only a motion that goes deeper counts as a hit, of what is otherwise. Shapes that are
@@ -316,7 +316,7 @@ fn only_if_deeper<V: Vector>(
 ) {
     let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
     let may_begin_in_contact = match answer.outcome {
-        Outcome::Hit(LinearHit { normal: Some(n), time, .. }) => {
+        Outcome::Hit(Impact { normal: Some(n), time, .. }) => {
             let closing = n.dot(motion.velocity_b - motion.velocity_a);
             // NaN is looked at.
             !(closing * time > slack)
@@ -341,12 +341,12 @@ fn only_if_deeper<V: Vector>(
         return;
     };
     answer.iterations += contact.start.iterations;
-    let is_hit_at_start = matches!(answer.outcome, Outcome::Hit(LinearHit { time, .. }) if time == zero);
+    let is_hit_at_start = matches!(answer.outcome, Outcome::Hit(Impact { time, .. }) if time == zero);
     if let Some(axis) = contact.leaves_along {
         (answer.outcome, answer.status) = (Outcome::Miss(Miss { axis }), Status::Converged);
         (answer.lower, answer.upper) = (infinity, infinity);
     } else if is_hit_at_start {
         let (point, normal) = (contact.start.point_b, Some(contact.start.normal));
-        answer.outcome = Outcome::Hit(LinearHit { time: zero, point, normal });
+        answer.outcome = Outcome::Hit(Impact { time: zero, point, normal });
     }
 }

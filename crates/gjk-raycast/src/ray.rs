@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::{LinearCastOptions, RayCastError, RayCastOptions};
+use crate::{LinearCastOptions, RayCastError, RayCastOptions, RigidMotion};
 
 /// The ray of the points `source + λ·direction`, λ ≥ 0. The direction need not be of unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +81,12 @@ pub struct Motion<V> {
 }
 
 impl<V: Vector> Motion<V> {
+    /// The motions of both bodies.
+    #[must_use]
+    pub fn translations(self) -> [RigidMotion<V>; 2] {
+        [self.velocity_a, self.velocity_b].map(RigidMotion::translation)
+    }
+
     /// The error of a motion that is none, or cannot be cast with these options.
     pub(crate) fn check(&self, options: &LinearCastOptions<V>) -> Result<(), RayCastError> {
         check_finite("velocity_a", self.velocity_a)?;

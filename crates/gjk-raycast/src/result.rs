@@ -217,31 +217,49 @@ pub struct Miss<V> {
     pub axis: V,
 }
 
-/// The answer of [`ray_cast`](crate::ray_cast).
+/// The answer of [`ray_cast`](crate::ray_cast), [`linear_cast`](crate::linear_cast) or
+/// [`motion_cast`](crate::motion_cast): the time is the parameter of the ray or that of the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
 #[cfg_attr(
     feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+    serde(bound(serialize = "H: serde::Serialize, V: serde::Serialize, V::Scalar: serde::Serialize"))
 )]
-pub struct RayCast<V: Vector> {
-    /// Hit, miss, or undecided.
-    pub outcome: Outcome<RayHit<V>, V>,
-    /// No point of the ray before this parameter is in the target. For a miss it is infinite, unless only rounding
-    /// decides whether the ray ends before it would hit.
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        deserialize = "H: serde::Deserialize<'de>, V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"
+    ))
+)]
+pub struct Cast<H, V: Vector> {
+    /// Hit, miss, or undecided. The axis of a miss of two bodies points from `b` to `a`; of a motion that turns it is
+    /// the normal of the last separating plane.
+    pub outcome: Outcome<H, V>,
+    /// The bodies, or the ray and its target, have no point in common before this time. For a miss it is infinite, or
+    /// the end of a motion that turns; unless only rounding decides whether the cast ends before a hit. Of bodies that
+    /// may [begin in contact](crate::StartInContact::IfDeeper), nothing that counts as a hit happens before.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// The point of the ray at this parameter is in the target. It is infinite where no such point is known: for a
-    /// miss, and for a hit that may be a miss, since the ray grazes the target, or touches it at its source, within
-    /// rounding.
+    /// They have a point in common at this time. It need not be their first, if bodies without an inside have passed
+    /// through one another in between. It is infinite where no such time is known: for a miss, and for a hit that may
+    /// be a miss, since they graze each other, or touch at the start, within rounding. Bodies that may [begin in
+    /// contact](crate::StartInContact::IfDeeper) have got deeper, or touched again, by then.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
-    /// How the iteration ended.
+    /// How the search ended.
     pub status: Status,
-    /// The number of support points computed.
+    /// The number of support points computed of each shape. Where bodies that move straight overlap at the start, those
+    /// of [`distance`](crate::distance) and [`signed_distance`](crate::signed_distance) as well.
     pub iterations: usize,
+}
+
+impl<H, V: Vector> Cast<H, V> {
+    /// Whether the outcome is certain: a hit is where the upper bound is finite, and a miss always.
+    #[must_use]
+    pub fn is_certain(&self) -> bool {
+        self.outcome.is_certain(self.upper < V::Scalar::infinity())
+    }
 }
 
 impl<V: Vector> RayCast<V> {
@@ -251,13 +269,25 @@ impl<V: Vector> RayCast<V> {
     pub fn warm_start(&self, before: Option<WarmStart<V>>) -> Option<WarmStart<V>> {
         self.outcome.warm_start(before, |hit| hit.normal)
     }
+}
 
-    /// Whether the outcome is certain: a hit is where the upper bound is finite, and a miss always.
+impl<V: Vector> LinearCast<V> {
+    /// What this answer tells the [cast of the next frame](crate::LinearCastOptions::warm_start), given what it was
+    /// told itself.
     #[must_use]
-    pub fn is_certain(&self) -> bool {
-        self.outcome.is_certain(self.upper < V::Scalar::infinity())
+    pub fn warm_start(&self, before: Option<WarmStart<V>>) -> Option<WarmStart<V>> {
+        self.outcome.warm_start(before, |hit| hit.normal)
     }
 }
+
+/// The answer of [`ray_cast`](crate::ray_cast).
+pub type RayCast<V> = Cast<RayHit<V>, V>;
+
+/// The answer of [`linear_cast`](crate::linear_cast).
+pub type LinearCast<V> = Cast<Impact<V>, V>;
+
+/// The answer of [`motion_cast`](crate::motion_cast).
+pub type MotionCast<V> = Cast<Impact<V>, V>;
 
 /// Where a ray enters a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -305,60 +335,18 @@ impl<V: Vector> RayExit<V> {
     }
 }
 
-/// The answer of [`linear_cast`](crate::linear_cast).
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[must_use]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
-pub struct LinearCast<V: Vector> {
-    /// Hit, miss, or undecided. The axis of a miss points from `b` to `a`.
-    pub outcome: Outcome<LinearHit<V>, V>,
-    /// The shapes have no point in common before this time. For a miss it is infinite, unless only rounding decides
-    /// whether the motion ends before they would meet. It does not count a contact at the start that the motion
-    /// [leaves](crate::StartInContact::IfDeeper).
-    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
-    pub lower: V::Scalar,
-    /// The shapes have a point in common at this time. It is infinite where no such time is known: for a miss, and for
-    /// a hit that may be a miss, since the shapes graze each other, or touch at the start, within rounding.
-    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
-    pub upper: V::Scalar,
-    /// How the iteration ended.
-    pub status: Status,
-    /// The number of support points computed of each shape; where they overlap at the start, those of
-    /// [`distance`](crate::distance) and [`signed_distance`](crate::signed_distance) as well.
-    pub iterations: usize,
-}
-
-impl<V: Vector> LinearCast<V> {
-    /// What this answer tells the [cast of the next frame](crate::LinearCastOptions::warm_start), given what it was
-    /// told itself.
-    #[must_use]
-    pub fn warm_start(&self, before: Option<WarmStart<V>>) -> Option<WarmStart<V>> {
-        self.outcome.warm_start(before, |hit| hit.normal)
-    }
-
-    /// Whether the outcome is certain: a hit is where the upper bound is finite, and a miss always.
-    #[must_use]
-    pub fn is_certain(&self) -> bool {
-        self.outcome.is_certain(self.upper < V::Scalar::infinity())
-    }
-}
-
-/// The first contact of two moving shapes.
+/// The first contact of two moving bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct LinearHit<V: Vector> {
-    /// The time of first contact; 0 where the shapes touch or overlap at the start.
+pub struct Impact<V: Vector> {
+    /// The time of first contact; 0 where the bodies touch or overlap at the start, unless only what [goes
+    /// deeper](crate::StartInContact::IfDeeper) counts.
     pub time: V::Scalar,
     /// A point of contact, in the world, at that time. With a [target
-    /// distance](crate::LinearCastOptions::target_distance) it is a point of `b`. Where the shapes overlap at the
+    /// distance](crate::LinearCastOptions::target_distance) it is a point of `b`. Where the bodies overlap at the
     /// start, it is a point in both but for rounding, as of [`distance`](crate::distance).
     pub point: V,
-    /// The unit normal of contact, out of `b` towards `a`. Where the shapes overlap at the start by more than rounding,
+    /// The unit normal of contact, out of `b` towards `a`. Where the bodies overlap at the start by more than rounding,
     /// it is `None`; with [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.
     pub normal: Option<V>,
 }

@@ -5,7 +5,7 @@ use crate::differences::{Body, Comparison, Random, Space, central};
 use convex_support::glam::{DVec2, DVec3};
 use convex_support::{AngularVelocity, Capsule, Cuboid, Posed, Rounded};
 use gjk_raycast::{
-    LinearCastOptions, LinearHit, Motion, MotionCastOptions, MotionHit, Ray, RayCastOptions, RayHit, RigidMotion,
+    Impact, ImpactGradient, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastOptions, RayHit, RigidMotion,
     Smoothness,
 };
 
@@ -45,7 +45,7 @@ fn compare_linear<V: Space>(a: &Body<V>, b: &Body<V>, random: &mut Random, all: 
     let motion = Motion { velocity_a: towards(a, b, random), velocity_b: random.vector::<V>() * 0.3 };
     let (change_a, change_b) = (random.motion(), random.motion());
     let (faster_a, faster_b) = (random.vector::<V>(), random.vector::<V>());
-    let cast = |[poses, velocities, radius]: [f64; 3]| -> Option<LinearHit<V>> {
+    let cast = |[poses, velocities, radius]: [f64; 3]| -> Option<Impact<V>> {
         let motion = Motion {
             velocity_a: motion.velocity_a + faster_a * velocities,
             velocity_b: motion.velocity_b + faster_b * velocities,
@@ -55,21 +55,24 @@ fn compare_linear<V: Space>(a: &Body<V>, b: &Body<V>, random: &mut Random, all: 
         linear_cast(&a, &b.moved(&change_b, poses), motion, options).expect("finite").outcome.hit()
     };
     let rounded = Rounded::new(&a.shape, RADIUS).expect(VALID);
+    let [motion_a, motion_b] = &motion.translations();
     let Some((hit, features)) =
-        cast([0.0; 3]).and_then(|hit| Some((hit, hit.closest_features(&rounded, &b.shape, motion)?)))
+        cast([0.0; 3]).and_then(|hit| Some((hit, hit.closest_features(&rounded, motion_a, &b.shape, motion_b)?)))
     else {
         return;
     };
     assert_eq!(features.smoothness(), Smoothness::Smooth, "{what}: {features:?}");
-    let rough = hit.gradient(motion).expect("it approaches");
-    let gradient = hit.refined(&features).gradient(motion).expect("it approaches");
-    let size = 1.0 + gradient.velocity_a.length() + gradient.pose_a.translation.length();
-    assert!((rough.velocity_a - gradient.velocity_a).length() < 1e-6 * size * size, "{what}: {rough:?}, {gradient:?}");
+    let rough = hit.gradient(motion_a, motion_b).expect("it approaches");
+    let gradient = hit.refined(&features).gradient(motion_a, motion_b).expect("it approaches");
+    let by_velocity = |gradient: &ImpactGradient<V>| gradient.contact_a.translation * hit.time;
+    let size = 1.0 + by_velocity(&gradient).length() + gradient.pose_a.translation.length();
+    let error = (by_velocity(&rough) - by_velocity(&gradient)).length();
+    assert!(error < 1e-6 * size * size, "{what}: {rough:?}, {gradient:?}");
 
-    let rate = hit.rate((&rounded, change_a), (&b.shape, change_b), motion).expect("one normal");
+    let rate = hit.rate((&rounded, motion_a, change_a), (&b.shape, motion_b, change_b)).expect("one normal");
     let by_pose = change_a.rate_of(gradient.pose_a) + change_b.rate_of(gradient.pose_b);
     assert!((rate - by_pose).abs() < 1e-10 * size * size, "{what}: {rate} and {by_pose}");
-    let by_velocity = gradient.velocity_a.dot(faster_a) + gradient.velocity_b.dot(faster_b);
+    let by_velocity = by_velocity(&gradient).dot(faster_a - faster_b);
     for (k, ours) in [by_pose, by_velocity, gradient.radius].into_iter().enumerate() {
         let time = |t| cast([0, 1, 2].map(|i| if i == k { t } else { 0.0 })).map_or(f64::NAN, |hit| hit.time);
         all[k].add(ours, central(time, 0.01), &|| format!("derivative {k} of {what}: {hit:?}, {gradient:?}"));
@@ -88,7 +91,7 @@ fn compare_motion<V: Space>(a: &Body<V>, b: &Body<V>, random: &mut Random, all: 
     let [poses, changes] = [0, 1].map(|_| [0, 1].map(|_| random.motion::<V>()));
     // How far apart they are to be at the hit.
     let distance = if random.signed() > 0.0 { 0.07 } else { 0.0 };
-    let cast = |[pose, velocity, angular, center, radius]: [f64; 5]| -> Option<MotionHit<V>> {
+    let cast = |[pose, velocity, angular, center, radius]: [f64; 5]| -> Option<Impact<V>> {
         let [motion_a, motion_b] = [0, 1].map(|i| RigidMotion {
             velocity: motions[i].velocity + changes[i].velocity * velocity,
             angular_velocity: V::AngularVelocity::from_coordinates(|k| {
@@ -194,5 +197,5 @@ fn a_turning_cast_is_derived_with_its_turn() {
     let frozen = -normal.x / normal.dot(motion.velocity);
     assert!((frozen / ours - 1.0).abs() > 0.1, "frozen it would be {frozen}, and is {ours}");
     // A hit at the start has no time to change.
-    assert_eq!(MotionHit { time: 0.0, normal: None, ..hit }.gradient(&motion, &rest), None);
+    assert_eq!(Impact { time: 0.0, normal: None, ..hit }.gradient(&motion, &rest), None);
 }

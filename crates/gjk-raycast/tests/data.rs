@@ -63,7 +63,10 @@ where
         round_trip(motion);
         let cast = linear_cast(&a, &b, motion, LinearCastOptions::default()).expect("finite");
         round_trip(cast);
-        round_trip(cast.outcome.hit().and_then(|hit| hit.gradient(motion)));
+        round_trip(cast.outcome.hit().and_then(|hit| {
+            let [motion_a, motion_b] = motion.translations();
+            hit.gradient(&motion_a, &motion_b)
+        }));
         let from = Pose { rotation: V::Rotation::default(), translation: V::ZERO };
         round_trip(from);
         let going = RigidMotion::between(from, Pose { translation: velocity_a * scalar(10.0), ..from }, scalar(7.0));

@@ -248,7 +248,8 @@ fn vertices_that_meet_have_no_one_normal() {
     let motion = Motion { velocity_a: -DVec3::ONE, velocity_b: DVec3::ZERO };
     let cast = linear_cast(&a, &cuboid, motion, LinearCastOptions::default()).expect("finite");
     let hit = cast.outcome.hit().expect("corner on corner");
-    let features = hit.closest_features(&a, &cuboid, motion).expect("it hits");
+    let [motion_a, motion_b] = motion.translations();
+    let features = hit.closest_features(&a, &motion_a, &cuboid, &motion_b).expect("it hits");
     assert!(!features.is_normal_unique() && features.are_points_unique(), "{features:?}");
     assert_eq!(features.smoothness(), Smoothness::Edge);
     assert_eq!(features.rate(RigidMotion::translation(DVec3::X), RigidMotion::default()), None);
@@ -260,7 +261,7 @@ fn vertices_that_meet_have_no_one_normal() {
     let (a, b) = (Rounded::new(a, 0.1).expect(VALID), Rounded::new(cuboid, 0.1).expect(VALID));
     let cast = linear_cast(&a, &b, motion, LinearCastOptions::default()).expect("finite");
     let hit = cast.outcome.hit().expect("corner on corner");
-    let features = hit.closest_features(&a, &b, motion).expect("it hits");
+    let features = hit.closest_features(&a, &motion_a, &b, &motion_b).expect("it hits");
     assert_eq!(features.smoothness(), Smoothness::Smooth, "{features:?}");
 }
 
@@ -302,10 +303,11 @@ fn times_of_faces_that_meet_have_one_sided_rates() {
     };
     let hit = land(0.0);
     let flat = parcel(0.0);
-    assert_eq!(hit.closest_features(&flat, &floor, fall).map(|f| f.smoothness()), Some(Smoothness::Edge));
+    let [falls, stays] = &fall.translations();
+    assert_eq!(hit.closest_features(&flat, falls, &floor, stays).map(|f| f.smoothness()), Some(Smoothness::Edge));
     for sign in [1.0, -1.0] {
         let turning = RigidMotion::rotation(sign, DVec2::new(0.0, 4.0));
-        let rate = hit.rate((&flat, turning), (&floor, RigidMotion::default()), fall).expect("one normal");
+        let rate = hit.rate((&flat, falls, turning), (&floor, stays, RigidMotion::default())).expect("one normal");
         assert!((rate + 0.25).abs() < 1e-14, "{rate}: half a metre of lever, at 2 m/s");
         let (theirs, _) = one_sided(|t| land(sign * t).time, 1e-3);
         assert!((rate - theirs).abs() < 1e-9, "{rate}, not {theirs}");
@@ -389,7 +391,8 @@ fn a_distance_of_zero_is_at_its_floor() {
         assert_eq!(answer.closest_features(&a, &floor).map(|f| f.smoothness()), Some(of_clamped), "{answer:?}");
         let hit =
             linear_cast(&a, &floor, fall, LinearCastOptions::default()).expect("finite").outcome.hit().expect("below");
-        assert_eq!(hit.closest_features(&a, &floor, fall).map(|f| f.smoothness()), Some(of_clamped), "{hit:?}");
+        let [falls, stays] = &fall.translations();
+        assert_eq!(hit.closest_features(&a, falls, &floor, stays).map(|f| f.smoothness()), Some(of_clamped), "{hit:?}");
         let options = MotionCastOptions::new().with_max_time(2.0);
         let hit = motion_cast(&a, spin, &floor, rest, options).expect("finite").outcome.hit().expect("below");
         let features = hit.closest_features(&a, &spin, &floor, &rest);

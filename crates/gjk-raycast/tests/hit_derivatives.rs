@@ -5,8 +5,8 @@ use crate::differences::{Body, Random, Solid, Space, apart, one_sided};
 use convex_support::glam::{DVec2, DVec3};
 use convex_support::{AngularVelocity, Cuboid, Posed, Rotation};
 use gjk_raycast::{
-    ClosestFeatures, LinearCastOptions, LinearHit, Motion, MotionCastOptions, MotionHit, Ray, RayCastOptions, RayHit,
-    RigidMotion, Smoothness,
+    ClosestFeatures, Impact, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastOptions, RayHit, RigidMotion,
+    Smoothness,
 };
 
 const VALID: &str = "positive sizes and finite numbers";
@@ -23,25 +23,19 @@ trait Hit<V: Space>: Copy {
     fn mended(self, features: &ClosestFeatures<V>) -> Self;
 }
 
-macro_rules! hit_of_bodies {
-    ($($Hit:ident),+) => {$(
-        impl<V: Space> Hit<V> for $Hit<V> {
-            fn place(&self) -> (V, V) {
-                (self.normal.expect("they touch later"), self.point)
-            }
+impl<V: Space> Hit<V> for Impact<V> {
+    fn place(&self) -> (V, V) {
+        (self.normal.expect("they touch later"), self.point)
+    }
 
-            fn with(self, normal: V, point: V) -> Self {
-                Self { normal: Some(normal), point, ..self }
-            }
+    fn with(self, normal: V, point: V) -> Self {
+        Self { normal: Some(normal), point, ..self }
+    }
 
-            fn mended(self, features: &ClosestFeatures<V>) -> Self {
-                self.refined(features)
-            }
-        }
-    )+};
+    fn mended(self, features: &ClosestFeatures<V>) -> Self {
+        self.refined(features)
+    }
 }
-
-hit_of_bodies!(LinearHit, MotionHit);
 
 /// The point of a ray is where its λ is.
 impl<V: Space> Hit<V> for RayHit<V> {
@@ -100,7 +94,8 @@ fn all_hits_are_mended<V: Space>(seed: u64, rounds: usize) {
         let motion = Motion { velocity_a: towards(a, b, &mut random), velocity_b: random.vector::<V>() * 0.3 };
         let cast = linear_cast(&a.shape, &b.shape, motion, LinearCastOptions::new()).expect("finite");
         if let Some(hit) = cast.outcome.hit().filter(|hit| hit.normal.is_some()) {
-            let features = |hit: LinearHit<V>| hit.closest_features(&a.shape, &b.shape, motion);
+            let [ma, mb] = motion.translations();
+            let features = |hit: Impact<V>| hit.closest_features(&a.shape, &ma, &b.shape, &mb);
             count[0] += usize::from(is_mended(&mut random, hit, features, &what("the linear cast")));
         }
 
@@ -109,7 +104,7 @@ fn all_hits_are_mended<V: Space>(seed: u64, rounds: usize) {
         let options = MotionCastOptions::new().with_max_time(3.0);
         let cast = motion_cast(&a.shape, ma, &b.shape, mb, options).expect("finite");
         if let Some(hit) = cast.outcome.hit().filter(|hit| hit.normal.is_some()) {
-            let features = |hit: MotionHit<V>| hit.closest_features(&a.shape, &ma, &b.shape, &mb);
+            let features = |hit: Impact<V>| hit.closest_features(&a.shape, &ma, &b.shape, &mb);
             count[1] += usize::from(is_mended(&mut random, hit, features, &what("the motion cast")));
         }
 
@@ -201,7 +196,8 @@ fn rates_of_linear_casts<V: Space>(seed: u64) {
         let [ma, mb] = [random.motion::<V>(), random.motion()];
         let options = LinearCastOptions::new();
         let hit = linear_cast(&a.shape, &b.shape, motion, options).expect("finite").outcome.hit().expect("it lands");
-        let ours = hit.rate((&a.shape, ma), (&b.shape, mb), motion).expect("one normal");
+        let [straight_a, straight_b] = motion.translations();
+        let ours = hit.rate((&a.shape, &straight_a, ma), (&b.shape, &straight_b, mb)).expect("one normal");
         let time = move |t: f64| {
             let cast = linear_cast(&a.moved(&ma, t), &b.moved(&mb, t), motion, options).expect("finite");
             cast.outcome.hit().map_or(f64::NAN, |hit| hit.time)

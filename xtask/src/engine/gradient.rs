@@ -1,7 +1,7 @@
 //! What the queries share that may carry `"gradient": true`.
 
 use convex_support::{AngularVelocity as _, Scalar as _, SupportMap};
-use gjk_raycast::{MotionGradient, SignedDistanceOptions, Smoothness, signed_distance};
+use gjk_raycast::{Impact, MotionGradient, RigidMotion, SignedDistanceOptions, Smoothness, signed_distance};
 
 use crate::wire::answer::{Answer, Field, Number};
 use crate::wire::shape::Space;
@@ -17,6 +17,24 @@ pub(super) struct Gradient<V: Space> {
 impl<V: Space> Gradient<V> {
     pub(super) fn new(a: MotionGradient<V>, b: MotionGradient<V>, smoothness: Smoothness) -> Self {
         Self { a, b, is_smooth: smoothness == Smoothness::Smooth }
+    }
+
+    /// Of the time of a hit of bodies that move so.
+    pub(super) fn of_impact<A, B>(
+        hit: Impact<V>,
+        (a, motion_a): (&A, &RigidMotion<V>),
+        (b, motion_b): (&B, &RigidMotion<V>),
+    ) -> Self
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let features = hit.closest_features(a, motion_a, b, motion_b);
+        let smooth = features.and_then(|features| {
+            let gradient = hit.refined(&features).gradient(motion_a, motion_b)?;
+            Some(Self::new(gradient.pose_a, gradient.pose_b, features.smoothness()))
+        });
+        smooth.unwrap_or_else(|| Self::at_floor(a, b))
     }
 
     /// Of a scalar that is at its floor where the shapes overlap: it stays there unless they merely touch.

@@ -1,7 +1,7 @@
 //! `linear_cast`.
 
 use convex_support::Vector;
-use gjk_raycast::{Body, LinearCastOptions, LinearHit, Motion, linear_cast, linear_cast_certificate};
+use gjk_raycast::{Body, Impact, LinearCastOptions, Motion, linear_cast, linear_cast_certificate};
 
 use super::cast::{self, Limits, problem};
 use super::gradient::{self, Gradient};
@@ -62,8 +62,12 @@ impl<V: Space> Question for Cast<V> {
             Body::HalfSpace(half_space) => half_space.linear_cast(&self.a, self.motion, self.options),
         }
         .map_err(problem)?;
+        let [motion_a, motion_b] = self.motion.translations();
         let hit = if self.gradient { cast.outcome.hit() } else { None };
-        Ok((cast, hit.and_then(|hit| self.gradient_of(hit))))
+        Ok((
+            cast,
+            hit.and_then(|hit| Some(Gradient::of_impact(hit, (&self.a, &motion_a), (self.b.convex()?, &motion_b)))),
+        ))
     }
 
     fn certificate(&self, (cast, _): &Self::Solution) -> Option<Answer> {
@@ -73,28 +77,16 @@ impl<V: Space> Question for Cast<V> {
     /// The derivatives by the velocities too.
     fn beside(&self, (cast, _): &Self::Solution) -> String {
         let derivatives = cast.outcome.hit().zip(self.b.convex()).and_then(|(hit, b)| {
-            let features = hit.closest_features(&self.a, b, self.motion)?;
-            Some(hit.refined(&features).gradient(self.motion))
+            let [motion_a, motion_b] = self.motion.translations();
+            let features = hit.closest_features(&self.a, &motion_a, b, &motion_b)?;
+            Some(hit.refined(&features).gradient(&motion_a, &motion_b))
         });
         format!("{derivatives:?}")
     }
 
     fn answer(&self, (cast, gradient): Self::Solution) -> Result<Answer, Problem> {
-        let show = |hit: LinearHit<V>| (hit.time, hit.point, hit.normal);
+        let show = |hit: Impact<V>| (hit.time, hit.point, hit.normal);
         let answer = cast::answer("time", cast.outcome, show, [cast.lower, cast.upper], cast.status, cast.iterations)?;
         Ok(gradient::with(answer, gradient))
-    }
-}
-
-impl<V: Space> Cast<V> {
-    /// The derivatives of the time of a hit.
-    fn gradient_of(&self, hit: LinearHit<V>) -> Option<Gradient<V>> {
-        let b = self.b.convex()?;
-        let features = hit.closest_features(&self.a, b, self.motion);
-        let smooth = features.and_then(|features| {
-            let gradient = hit.refined(&features).gradient(self.motion)?;
-            Some(Gradient::new(gradient.pose_a, gradient.pose_b, features.smoothness()))
-        });
-        Some(smooth.unwrap_or_else(|| Gradient::at_floor(&self.a, b)))
     }
 }

@@ -1,7 +1,7 @@
 //! `motion_cast`.
 
 use convex_support::Vector;
-use gjk_raycast::{Body, MotionCastOptions, MotionHit, RigidMotion};
+use gjk_raycast::{Body, Impact, MotionCastOptions, RigidMotion};
 
 use super::cast::{self, Limits, problem};
 use super::gradient::{self, Gradient};
@@ -62,7 +62,12 @@ impl<V: Space> Question for Cast<V> {
     fn solve(&self) -> Result<Self::Solution, Problem> {
         let cast = self.b.motion_cast_of_both(&self.a, self.motion_a, self.motion_b, self.options).map_err(problem)?;
         let hit = if self.gradient { cast.outcome.hit() } else { None };
-        Ok((cast, hit.and_then(|hit| self.gradient_of(hit))))
+        Ok((
+            cast,
+            hit.and_then(|hit| {
+                Some(Gradient::of_impact(hit, (&self.a, &self.motion_a), (self.b.convex()?, &self.motion_b)))
+            }),
+        ))
     }
 
     /// The derivatives by the motions too.
@@ -77,21 +82,8 @@ impl<V: Space> Question for Cast<V> {
     }
 
     fn answer(&self, (cast, gradient): Self::Solution) -> Result<Answer, Problem> {
-        let show = |hit: MotionHit<V>| (hit.time, hit.point, hit.normal);
+        let show = |hit: Impact<V>| (hit.time, hit.point, hit.normal);
         let answer = cast::answer("time", cast.outcome, show, [cast.lower, cast.upper], cast.status, cast.iterations)?;
         Ok(gradient::with(answer, gradient))
-    }
-}
-
-impl<V: Space> Cast<V> {
-    /// The derivatives of the time of a hit.
-    fn gradient_of(&self, hit: MotionHit<V>) -> Option<Gradient<V>> {
-        let b = self.b.convex()?;
-        let features = hit.closest_features(&self.a, &self.motion_a, b, &self.motion_b);
-        let smooth = features.and_then(|features| {
-            let gradient = hit.refined(&features).gradient(&self.motion_a, &self.motion_b)?;
-            Some(Gradient::new(gradient.pose_a, gradient.pose_b, features.smoothness()))
-        });
-        Some(smooth.unwrap_or_else(|| Gradient::at_floor(&self.a, b)))
     }
 }

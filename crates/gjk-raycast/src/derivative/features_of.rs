@@ -9,8 +9,7 @@ use super::closest_features::{ClosestPoints, rounding};
 use crate::motion::Moved;
 use crate::shape::Shape;
 use crate::{
-    Distance, LinearHit, Motion, MotionHit, Ray, RayHit, RigidMotion, SignedDistance, SignedDistanceOptions,
-    Trajectory, signed_distance,
+    Distance, Impact, Ray, RayHit, RigidMotion, SignedDistance, SignedDistanceOptions, Trajectory, signed_distance,
 };
 
 /// How far overlapping bodies are pushed into one another to see whether there is another way out, as a part of their
@@ -110,50 +109,10 @@ impl<V: Vector> SignedDistance<V> {
     }
 }
 
-impl<V: Vector> LinearHit<V> {
-    /// The features that touch, of the shapes that were cast with the given motion; `None` where they overlap at the
-    /// start.
-    #[must_use]
-    pub fn closest_features<A, B>(&self, a: &A, b: &B, motion: Motion<V>) -> Option<ClosestFeatures<V>>
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
-        let [motion_a, motion_b] = [motion.velocity_a, motion.velocity_b].map(RigidMotion::translation);
-        touching(self.normal?, self.point, self.time, (&a, &motion_a), (&b, &motion_b))
-    }
-
-    /// The hit with the normal and the point of its [features](Self::closest_features), which are known to rounding,
-    /// and so its [gradient](Self::gradient).
-    #[must_use]
-    pub fn refined(self, features: &ClosestFeatures<V>) -> Self {
-        Self { normal: Some(features.normal), point: features.points[1], ..self }
-    }
-
-    /// How much later the shapes touch as their start poses begin to move, per unit of time of that motion: the
-    /// one-sided derivative of the time of contact. It is exact also where parallel faces or edges touch. `None` where
-    /// there is no [`gradient`](Self::gradient), or the normal is [not the only
-    /// one](ClosestFeatures::is_normal_unique).
-    #[must_use]
-    pub fn rate<A, B>(
-        &self,
-        (a, change_a): (&A, RigidMotion<V>),
-        (b, change_b): (&B, RigidMotion<V>),
-        motion: Motion<V>,
-    ) -> Option<V::Scalar>
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
-        let [motion_a, motion_b] = [motion.velocity_a, motion.velocity_b].map(RigidMotion::translation);
-        let features = self.closest_features(a, b, motion)?;
-        delay(&features, self.time, (&motion_a, change_a), (&motion_b, change_b))
-    }
-}
-
-impl<V: Vector> MotionHit<V> {
-    /// The features that touch, of the bodies that were cast with the given motions; `None` where they overlap at the
-    /// start.
+impl<V: Vector> Impact<V> {
+    /// The features that touch, of the bodies that were cast with the given motions, those of a
+    /// [`linear_cast`](crate::linear_cast) being its [translations](crate::Motion::translations); `None` where they
+    /// overlap at the start.
     #[must_use]
     pub fn closest_features<A, MA, B, MB>(
         &self,
@@ -178,8 +137,10 @@ impl<V: Vector> MotionHit<V> {
         Self { normal: Some(features.normal), point: features.points[1], ..self }
     }
 
-    /// How much later the bodies touch as their start poses begin to move, per unit of time of that motion, as
-    /// [`LinearHit::rate`].
+    /// How much later the bodies touch as their start poses begin to move, per unit of time of that motion: the
+    /// one-sided derivative of the time of contact. It is exact also where parallel faces or edges touch. `None` where
+    /// there is no [`gradient`](Self::gradient), or the normal is [not the only
+    /// one](ClosestFeatures::is_normal_unique).
     #[must_use]
     pub fn rate<A, MA, B, MB>(
         &self,

@@ -6,7 +6,7 @@ use num_traits::Float as _;
 use super::HalfSpace;
 use super::plane::Lowest;
 use super::ray_cast::Landing;
-use crate::{LinearCast, LinearCastOptions, LinearHit, Miss, Motion, Outcome, RayCastError, StartInContact, Status};
+use crate::{Impact, LinearCast, LinearCastOptions, Miss, Motion, Outcome, RayCastError, StartInContact, Status};
 
 impl<V: Vector> HalfSpace<V> {
     /// When a moving shape, `a`, first touches the half-space, `b`: the ray of its lowest point.
@@ -33,7 +33,7 @@ impl<V: Vector> HalfSpace<V> {
         let Landing { outcome, lower, upper, status } = plane.crossing(height, sinking, options.max_time);
         let has_normal = height.most() >= zero || goes_deeper;
         let outcome = match outcome {
-            Outcome::Hit(time) => Outcome::Hit(LinearHit {
+            Outcome::Hit(time) => Outcome::Hit(Impact {
                 time,
                 // Of a target distance, the point of the half-space below.
                 point: point + motion.velocity_a * time,

@@ -15,7 +15,7 @@ use crate::half_space::Plane;
 use crate::motion::Bounds;
 use crate::motion::checked;
 use crate::options::setters;
-use crate::{Body, MotionCast, MotionCastOptions, MotionHit, Outcome, RayCastError, Scene};
+use crate::{Body, Impact, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene};
 
 /// Parts of a box of joint values to look at: a pair of links of a robot arm takes up to ten thousand.
 const MAX_BOXES: usize = 100_000;
@@ -279,7 +279,7 @@ impl<V: Vector> First<V> {
                     self.stop = Some(PathStop { edge: self.edge, lower, link, body, met });
                 }
             }
-            Outcome::Hit(MotionHit { time, point, normal }) => {
+            Outcome::Hit(Impact { time, point, normal }) => {
                 let (edge, time, status) = (self.edge, (from + time).min(upper).max(lower), cast.status);
                 let next = PathContact { edge, time, lower, upper, link, body, met, point, normal, status };
                 let known = self.contact.unwrap_or(next);

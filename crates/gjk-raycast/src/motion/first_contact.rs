@@ -13,9 +13,9 @@ use super::approach::Approach;
 use super::free_interval::acceleration_if_free;
 use super::instant::{Base, Instant, Limits, NEAR, Stage};
 use super::options::MotionCastOptions;
-use super::result::{MotionCast, MotionHit, MotionIterate};
+use super::result::MotionIterate;
 use super::trajectory::TurningPlane;
-use crate::{Miss, Outcome, StartInContact, Status};
+use crate::{Impact, Miss, MotionCast, Outcome, StartInContact, Status};
 
 /// Where to be when a contact is as near as can be told: its distance in units of what that may be wrong by.
 pub(super) const AIM: f64 = 1.5;
@@ -287,7 +287,7 @@ impl<'p, V: Vector> Search<'p, V> {
                 } else {
                     (point, None)
                 };
-                (Outcome::Hit(MotionHit { time, point, normal }), Status::Converged)
+                (Outcome::Hit(Impact { time, point, normal }), Status::Converged)
             }
         };
         let (upper, iterations) = (self.upper, self.bodies.iterations());

@@ -34,6 +34,6 @@ pub(crate) use motion_cast::{check, checked};
 pub use motion_cast::{motion_cast, motion_cast_with};
 pub(crate) use moved::Moved;
 pub use options::MotionCastOptions;
-pub use result::{MotionCast, MotionHit, MotionIterate};
+pub use result::MotionIterate;
 pub use rigid_motion::{Pose, RigidMotion};
 pub use trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};

@@ -8,7 +8,7 @@ use super::first_contact::{MotionEnd, Search};
 use super::instant::{Instant, Limits};
 use super::moving_pair::MovingPair;
 use super::options::MotionCastOptions;
-use super::result::{MotionCast, MotionHit, MotionIterate};
+use super::result::MotionIterate;
 use super::rigid_motion::RigidMotion;
 use super::trajectory::Trajectory;
 use crate::body::{Both, CastBody, Shapes};
@@ -20,7 +20,7 @@ use crate::ray::check_limits;
 use crate::ray::{check_finite, check_numbers};
 use crate::separation::Closer;
 use crate::shape::Shape;
-use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, WarmStart};
+use crate::{LinearCast, LinearCastOptions, Motion, MotionCast, WarmStart};
 
 /// When two moving bodies first touch, and where.
 ///
@@ -175,14 +175,8 @@ pub(crate) fn linear_options<V: Vector>(options: &MotionCastOptions<V>) -> Linea
 
 /// The answer for a motion that does not turn.
 pub(crate) fn of_linear_cast<V: Vector>(cast: LinearCast<V>, max_time: V::Scalar) -> MotionCast<V> {
-    let outcome = match cast.outcome {
-        Outcome::Hit(LinearHit { time, point, normal }) => Outcome::Hit(MotionHit { time, point, normal }),
-        Outcome::Miss(miss) => Outcome::Miss(miss),
-        Outcome::Undecided => Outcome::Undecided,
-    };
     // What comes after the end of the motion is not said of other motions either.
-    let (lower, upper) = (cast.lower.min(max_time), cast.upper);
-    MotionCast { outcome, lower, upper, status: cast.status, iterations: cast.iterations }
+    MotionCast { lower: cast.lower.min(max_time), ..cast }
 }
 
 /// The options, if they are numbers, with what is below zero taken for zero.

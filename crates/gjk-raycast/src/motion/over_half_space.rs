@@ -11,13 +11,13 @@ use super::instant::{Instant, Limits};
 use super::motion_cast::{check, checked, linear_options, of_linear_cast};
 use super::moving_body::MovingBody;
 use super::options::MotionCastOptions;
-use super::result::{MotionCast, MotionIterate};
+use super::result::MotionIterate;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::half_space::Plane;
 use crate::level::Level;
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::{length_bound, lost_to_underflow};
-use crate::{HalfSpace, Motion, RayCastError};
+use crate::{HalfSpace, Motion, MotionCast, RayCastError};
 
 impl<V: Vector> HalfSpace<V> {
     /// When a shape that moves and turns, `a`, first touches the half-space, `b`, which is at rest.
@@ -44,7 +44,7 @@ impl<V: Vector> HalfSpace<V> {
     /// same. At every time the body's lowest point is one support point, and the plane between the bodies is known.
     /// What does not turn is answered by [`linear_cast`](Self::linear_cast).
     ///
-    /// The [`gradient`](crate::MotionHit::gradient) of a hit is that against a body at rest.
+    /// The [`gradient`](crate::Impact::gradient) of a hit is that against a body at rest.
     ///
     /// # Errors
     /// As of [`motion_cast`](crate::motion_cast()).

@@ -9,7 +9,7 @@ use num_traits::Float;
 use super::result::{SceneAnyHit, SceneCast, SceneHits, SceneLinearCast, SceneRayCast, Work, reuse};
 use super::single::SingleAnswer;
 use super::{Among, Body, BodyHit, Scene};
-use crate::{LinearCastOptions, LinearHit, Motion, Ray, RayCastError, RayCastOptions, RayHit};
+use crate::{Impact, LinearCastOptions, Motion, Ray, RayCastError, RayCastOptions, RayHit};
 
 /// A hit of a ray and the body that it is of.
 type RayBodyHit<V> = BodyHit<RayHit<V>, <V as Vector>::Scalar>;
@@ -92,7 +92,7 @@ impl<S: SupportMap> Scene<S> {
         shape: &A,
         motion: Motion<S::Vector>,
         options: LinearCastOptions<S::Vector>,
-        hits: &mut Vec<BodyHit<LinearHit<S::Vector>, Number<S>>>,
+        hits: &mut Vec<BodyHit<Impact<S::Vector>, Number<S>>>,
     ) -> Result<SceneHits, RayCastError> {
         self.all().linear_cast_all(shape, motion, options, hits)
     }
@@ -189,7 +189,7 @@ impl<S: SupportMap> Among<'_, S> {
         shape: &A,
         motion: Motion<S::Vector>,
         options: LinearCastOptions<S::Vector>,
-        hits: &mut Vec<BodyHit<LinearHit<S::Vector>, Number<S>>>,
+        hits: &mut Vec<BodyHit<Impact<S::Vector>, Number<S>>>,
     ) -> Result<SceneHits, RayCastError> {
         motion.check(&options)?;
         let ask = |body: &Body<S>| Ok(body.linear_cast(shape, motion, options)?.into());

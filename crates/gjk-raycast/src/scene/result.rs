@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use convex_support::Vector;
 use num_traits::Float;
 
-use crate::{Contact, Distance, LinearHit, MotionHit, RayHit, SignedDistance, Status};
+use crate::{Contact, Distance, Impact, RayHit, SignedDistance, Status};
 
 /// What was done for an answer, and what was left out: a report that need not be looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,10 +60,10 @@ impl<H, S: Float> SceneCast<H, S> {
 pub type SceneRayCast<V> = SceneCast<RayHit<V>, <V as Vector>::Scalar>;
 
 /// The answer of [`Scene::linear_cast`](crate::Scene::linear_cast).
-pub type SceneLinearCast<V> = SceneCast<LinearHit<V>, <V as Vector>::Scalar>;
+pub type SceneLinearCast<V> = SceneCast<Impact<V>, <V as Vector>::Scalar>;
 
 /// The answer of [`Scene::motion_cast`](crate::Scene::motion_cast).
-pub type SceneMotionCast<V> = SceneCast<MotionHit<V>, <V as Vector>::Scalar>;
+pub type SceneMotionCast<V> = SceneCast<Impact<V>, <V as Vector>::Scalar>;
 
 /// Which body is hit, and what the single query for it answers.
 #[derive(Clone, Copy, Debug, PartialEq)]

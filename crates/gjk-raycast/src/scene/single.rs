@@ -5,9 +5,9 @@ use convex_support::{AngularVelocity as _, Scalar as _, SupportMap, Vector};
 use super::Body;
 use super::result::BodyHit;
 use crate::{
-    ChainMotion, LinearCast, LinearCastOptions, LinearHit, Motion, MotionCast, MotionCastOptions, MotionHit,
-    MotionIterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, RigidMotion, Status, Trajectory,
-    linear_cast, motion_cast, motion_cast_with, ray_cast,
+    ChainMotion, Impact, LinearCast, LinearCastOptions, Motion, MotionCast, MotionCastOptions, MotionIterate, Outcome,
+    Ray, RayCast, RayCastError, RayCastOptions, RayHit, RigidMotion, Status, Trajectory, linear_cast, motion_cast,
+    motion_cast_with, ray_cast,
 };
 
 /// The answer of one cast: `H` is a hit, `S` its λ or time.
@@ -35,15 +35,8 @@ impl<V: Vector> From<RayCast<V>> for SingleAnswer<RayHit<V>, V::Scalar> {
     }
 }
 
-impl<V: Vector> From<LinearCast<V>> for SingleAnswer<LinearHit<V>, V::Scalar> {
+impl<V: Vector> From<LinearCast<V>> for SingleAnswer<Impact<V>, V::Scalar> {
     fn from(LinearCast { outcome, lower, upper, status, .. }: LinearCast<V>) -> Self {
-        let is_undecided = matches!(outcome, Outcome::Undecided);
-        Self { hit: outcome.hit().map(|hit| (hit.time, hit)), is_undecided, lower, upper, status }
-    }
-}
-
-impl<V: Vector> From<MotionCast<V>> for SingleAnswer<MotionHit<V>, V::Scalar> {
-    fn from(MotionCast { outcome, lower, upper, status, .. }: MotionCast<V>) -> Self {
         let is_undecided = matches!(outcome, Outcome::Undecided);
         Self { hit: outcome.hit().map(|hit| (hit.time, hit)), is_undecided, lower, upper, status }
     }
@@ -113,7 +106,7 @@ impl<S: SupportMap> Body<S> {
         let Outcome::Hit(hit) = cast.outcome else { return Ok(cast) };
         let place = of_body.displacement(hit.time);
         let normal = hit.normal.map(|normal| place.rotation() * normal);
-        Ok(MotionCast { outcome: Outcome::Hit(MotionHit { point: place.of(hit.point), normal, ..hit }), ..cast })
+        Ok(MotionCast { outcome: Outcome::Hit(Impact { point: place.of(hit.point), normal, ..hit }), ..cast })
     }
 }
 

@@ -302,7 +302,8 @@ impl Case {
         let options = LinearCastOptions::default().with_max_time(4.0);
         let cast = linear_cast(&a, &b, motion, options).expect(FINITE);
         let Some(hit) = cast.outcome.hit() else { return Judged::Missed };
-        let Some(features) = hit.closest_features(&a, &b, motion) else { return Judged::Missed };
+        let [ma, mb] = motion.translations();
+        let Some(features) = hit.closest_features(&a, &ma, &b, &mb) else { return Judged::Missed };
         if features.smoothness() == Smoothness::Edge || hit.time == 0.0 {
             return Judged::Irregular;
         }
@@ -316,12 +317,14 @@ impl Case {
         let options = LinearCastOptions::default().with_max_time(Scalar::from_f64(4.0));
         let cast = linear_cast(&a, &b, motion, options).expect(FINITE);
         let Some(hit) = cast.outcome.hit() else { return Judged::Irregular };
-        let Some(features) = hit.closest_features(&a, &b, motion) else { return Judged::Irregular };
-        let Some(gradient) = hit.refined(&features).gradient(motion) else { return Judged::Irregular };
+        let [ma, mb] = motion.translations();
+        let Some(features) = hit.closest_features(&a, &ma, &b, &mb) else { return Judged::Irregular };
+        let Some(gradient) = hit.refined(&features).gradient(&ma, &mb) else { return Judged::Irregular };
+        let by_velocity = coordinates(gradient.contact_a.translation * hit.time);
         let ours = self.changes[0].motion().rate_of(gradient.pose_a).as_f64()
             + self.changes[1].motion().rate_of(gradient.pose_b).as_f64()
-            + dot(coordinates(gradient.velocity_a), rates[0].velocity)
-            + dot(coordinates(gradient.velocity_b), rates[1].velocity);
+            + dot(by_velocity, rates[0].velocity)
+            - dot(by_velocity, rates[1].velocity);
         Judged::of_hit::<V>(ours, time, slopes)
     }
 

@@ -1,12 +1,12 @@
-//! How the time of a first contact changes: bodies that move and turn.
+//! How the time of a first contact changes.
 
 use convex_support::numerics::elementary::sin_cos;
 use convex_support::{AngularVelocity, Matrix, MotionGradient, Scalar, Vector};
 
 use super::at_contact::at_contact;
-use crate::{MotionHit, RigidMotion, Trajectory};
+use crate::{Impact, RigidMotion, Trajectory};
 
-/// The derivatives of the time of first contact of two bodies that move and turn.
+/// The derivatives of the time of first contact of two bodies that move, and may turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -15,14 +15,14 @@ use crate::{MotionHit, RigidMotion, Trajectory};
     feature = "serde",
     serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
 )]
-pub struct MotionCastGradient<V: Vector> {
+pub struct ImpactGradient<V: Vector> {
     /// By the pose of `a` at the start. Its motion stays what it is, the centre included.
     pub pose_a: MotionGradient<V>,
     /// By the pose of `b` at the start.
     pub pose_b: MotionGradient<V>,
     /// By the place of `a` at the time of contact. With it the time can be derived by any parameter of the motion: find
     /// how the parameter displaces the body at that time. [`RigidMotion::gradient`] does so for the parameters of a
-    /// rigid motion.
+    /// rigid motion; by its velocity it is the time times the derivative by a translation.
     pub contact_a: MotionGradient<V>,
     /// By the place of `b` at the time of contact.
     pub contact_b: MotionGradient<V>,
@@ -44,14 +44,15 @@ pub struct RigidMotionGradient<V: Vector> {
     pub center: V,
 }
 
-impl<V: Vector> MotionHit<V> {
+impl<V: Vector> Impact<V> {
     /// The derivatives of the time of first contact, for the motions of the cast that it is the answer of. `None` where
-    /// the bodies overlap at the start, or touch and do not approach one another.
+    /// the bodies overlap at the start, since the time is then 0, or touch and do not approach one another, since it then
+    /// jumps. The motions of a [`linear_cast`](crate::linear_cast) are its [translations](crate::Motion::translations).
     ///
     /// With `n` the normal at the time `t`, `p` the point of contact and `w` the velocity there of `a` as seen from
     /// `b`, a displacement `δ` of `a` at that time changes it by `−n·δ/(n·w)`. A displacement of the start pose is
     /// turned by the motion until then: the force on it is `Rᵀ(−n/(n·w))`, at the point of the body that will be in
-    /// contact, where that is at the start.
+    /// contact, where that is at the start. The derivatives grow as `1/(n·w)` towards grazing contacts.
     ///
     /// Where there is only one point of contact they are derivatives, and elsewhere one-sided derivatives;
     /// [`closest_features`](Self::closest_features) tells which.
@@ -77,8 +78,29 @@ impl<V: Vector> MotionHit<V> {
     /// assert!((by_motion.angular_velocity.z + hit.time / 2.0).abs() < 1e-14);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
+    ///
+    /// ```
+    /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
+    /// use gjk_raycast::{LinearCastOptions, Motion, linear_cast};
+    ///
+    /// // A ball flies at a wall 9 m away, at 3 m/s and obliquely.
+    /// let ball = Ball::new(1.0)?;
+    /// let wall =
+    ///     Posed::translated(Cuboid::new(DVec3::new(1.0, 50.0, 50.0))?, DVec3::new(11.0, 0.0, 0.0))?;
+    /// let motion = Motion { velocity_a: DVec3::new(3.0, 4.0, 0.0), velocity_b: DVec3::ZERO };
+    /// let cast = linear_cast(&ball, &wall, motion, LinearCastOptions::default())?;
+    /// let hit = cast.outcome.hit().ok_or("it arrives")?;
+    /// let [motion_a, motion_b] = motion.translations();
+    /// let gradient = hit.gradient(&motion_a, &motion_b).ok_or("it approaches")?;
+    /// // A metre ahead is a third of a second sooner.
+    /// assert_eq!(gradient.pose_a.translation, DVec3::new(-1.0 / 3.0, 0.0, 0.0));
+    /// let by_velocity = gradient.contact_a.translation * hit.time;
+    /// assert_eq!(by_velocity, DVec3::new(-1.0, 0.0, 0.0)); // t = 9/v
+    /// assert_eq!(gradient.radius, -1.0 / 3.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
-    pub fn gradient<A, B>(&self, motion_a: &A, motion_b: &B) -> Option<MotionCastGradient<V>>
+    pub fn gradient<A, B>(&self, motion_a: &A, motion_b: &B) -> Option<ImpactGradient<V>>
     where
         A: Trajectory<Vector = V> + ?Sized,
         B: Trajectory<Vector = V> + ?Sized,
@@ -86,7 +108,7 @@ impl<V: Vector> MotionHit<V> {
         let velocity = motion_a.velocity(self.time, self.point) - motion_b.velocity(self.time, self.point);
         let contact_a = at_contact(self.normal, velocity, self.point)?;
         let contact_b = contact_a.reversed();
-        Some(MotionCastGradient {
+        Some(ImpactGradient {
             pose_a: at_start(motion_a, self.time, contact_a),
             pose_b: at_start(motion_b, self.time, contact_b),
             contact_a,
@@ -118,7 +140,7 @@ impl<V: Vector> RigidMotion<V> {
     }
 
     /// The derivatives of a number by the parameters of this motion, given `force`, its derivative by the pose that the
-    /// body has at `time`; such as [`MotionCastGradient::contact_a`] and the time of the hit.
+    /// body has at `time`; such as [`ImpactGradient::contact_a`] and the time of the hit.
     ///
     /// With `x = c + t·v + y`, `y = R(tω)·(x₀ − c)`, the parameters displace a point by
     ///
