@@ -17,23 +17,15 @@ const MAX_ITERATIONS: usize = 200;
 /// the cap bounds the time that ties take, such as an ellipsoid of revolution within another about the same axis.
 const MAX_DEPTH_ITERATIONS: usize = 500;
 
-/// The methods `with_…` of the fields that several options share.
+/// The methods `with_…` of the fields that options have.
 macro_rules! setters {
     ($($field:ident),*) => { $(setters! { @ $field })* };
     (@ tolerance) => {
-        /// With another [`tolerance`](Self::tolerance).
-        #[must_use]
-        pub const fn with_tolerance(mut self, tolerance: V::Scalar) -> Self {
-            self.tolerance = tolerance;
-            self
-        }
+        setters! { with_tolerance(tolerance: V::Scalar), "With another [`tolerance`](Self::tolerance)." }
     };
     (@ max_iterations) => {
-        /// With another cap on the [iterations](Self::max_iterations).
-        #[must_use]
-        pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
-            self.max_iterations = max_iterations;
-            self
+        setters! {
+            with_max_iterations(max_iterations: usize), "With another cap on the [iterations](Self::max_iterations)."
         }
     };
     (@ axis) => {
@@ -45,11 +37,9 @@ macro_rules! setters {
         }
     };
     (@ warm_start) => {
-        /// With what the last frame [tells](Self::warm_start), if there was one.
-        #[must_use]
-        pub const fn with_warm_start(mut self, warm_start: Option<WarmStart<V>>) -> Self {
-            self.warm_start = warm_start;
-            self
+        setters! {
+            with_warm_start(warm_start: Option<WarmStart<V>>),
+            "With what the last frame [tells](Self::warm_start), if there was one."
         }
 
         /// With a [first axis](WarmStart::new).
@@ -58,57 +48,60 @@ macro_rules! setters {
             self.with_warm_start(Some(WarmStart::new(axis)))
         }
     };
-    (@ limit) => {
-        /// With a [`limit`](Self::limit).
-        #[must_use]
-        pub const fn with_limit(mut self, limit: V::Scalar) -> Self {
-            self.limit = limit;
-            self
+    (@ limit) => { setters! { with_limit(limit: V::Scalar), "With a [`limit`](Self::limit)." } };
+    (@ depth_limit) => {
+        setters! { with_depth_limit(depth_limit: V::Scalar), "With a [`depth_limit`](Self::depth_limit)." }
+    };
+    (@ min_lambda) => {
+        setters! {
+            with_min_lambda(min_lambda: V::Scalar), "With a [beginning of the ray](Self::min_lambda) beyond its source."
         }
     };
-    (@ max_time) => {
-        /// With an [end of the motion](Self::max_time).
-        #[must_use]
-        pub const fn with_max_time(mut self, max_time: V::Scalar) -> Self {
-            self.max_time = max_time;
-            self
-        }
+    (@ max_lambda) => {
+        setters! { with_max_lambda(max_lambda: V::Scalar), "With an [end of the ray](Self::max_lambda)." }
     };
+    (@ max_time) => { setters! { with_max_time(max_time: V::Scalar), "With an [end of the motion](Self::max_time)." } };
     (@ target_distance) => {
-        /// With a [`target_distance`](Self::target_distance).
-        #[must_use]
-        pub const fn with_target_distance(mut self, target_distance: V::Scalar) -> Self {
-            self.target_distance = target_distance;
-            self
+        setters! {
+            with_target_distance(target_distance: V::Scalar), "With a [`target_distance`](Self::target_distance)."
         }
     };
     (@ start_in_contact) => {
-        /// With another answer where the shapes [touch at the start](Self::start_in_contact).
-        #[must_use]
-        pub const fn with_start_in_contact(mut self, start_in_contact: $crate::StartInContact) -> Self {
-            self.start_in_contact = start_in_contact;
-            self
+        setters! {
+            with_start_in_contact(start_in_contact: $crate::StartInContact),
+            "With another answer where the shapes [touch at the start](Self::start_in_contact)."
         }
     };
     (@ sub_algorithm) => {
-        /// With another [`sub_algorithm`](Self::sub_algorithm).
-        #[must_use]
-        pub const fn with_sub_algorithm(mut self, sub_algorithm: SubAlgorithm) -> Self {
-            self.sub_algorithm = sub_algorithm;
-            self
+        setters! {
+            with_sub_algorithm(sub_algorithm: SubAlgorithm), "With another [`sub_algorithm`](Self::sub_algorithm)."
         }
     };
-    (@ method) => {
-        /// With another [`method`](Self::method).
+    (@ method) => { setters! { with_method(method: CastMethod), "With another [`method`](Self::method)." } };
+    ($with:ident($field:ident: $Type:ty), $doc:literal) => {
+        #[doc = $doc]
         #[must_use]
-        pub const fn with_method(mut self, method: CastMethod) -> Self {
-            self.method = method;
+        pub const fn $with(mut self, $field: $Type) -> Self {
+            self.$field = $field;
             self
         }
     };
 }
 
 pub(crate) use setters;
+
+/// Options by default are new ones.
+macro_rules! new_by_default {
+    ($($Options:ident),*) => {$(
+        impl<V: Vector> Default for $Options<V> {
+            fn default() -> Self {
+                Self::new()
+            }
+        }
+    )*};
+}
+
+new_by_default!(DistanceOptions, SignedDistanceOptions, IntersectOptions, RayCastOptions, LinearCastOptions);
 
 /// Options of [`distance`](crate::distance).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,12 +156,6 @@ impl<V: Vector> DistanceOptions<V> {
     setters!(limit, tolerance, max_iterations, axis, sub_algorithm);
 }
 
-impl<V: Vector> Default for DistanceOptions<V> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// Options of [`signed_distance`](crate::signed_distance).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -206,20 +193,7 @@ impl<V: Vector> SignedDistanceOptions<V> {
         }
     }
 
-    setters!(tolerance, limit, max_iterations, axis);
-
-    /// With a [`depth_limit`](Self::depth_limit).
-    #[must_use]
-    pub const fn with_depth_limit(mut self, depth_limit: V::Scalar) -> Self {
-        self.depth_limit = depth_limit;
-        self
-    }
-}
-
-impl<V: Vector> Default for SignedDistanceOptions<V> {
-    fn default() -> Self {
-        Self::new()
-    }
+    setters!(tolerance, limit, depth_limit, max_iterations, axis);
 }
 
 /// Options of [`intersects`](crate::intersects).
@@ -245,12 +219,6 @@ impl<V: Vector> IntersectOptions<V> {
     }
 
     setters!(max_iterations, axis, sub_algorithm);
-}
-
-impl<V: Vector> Default for IntersectOptions<V> {
-    fn default() -> Self {
-        Self::new()
-    }
 }
 
 /// How a cast finds the planes that bound its hit. The bounds are computed in the same way by every method, so that the
@@ -349,27 +317,7 @@ impl<V: Vector> RayCastOptions<V> {
         }
     }
 
-    /// With a [beginning of the ray](Self::min_lambda) beyond its source.
-    #[must_use]
-    pub const fn with_min_lambda(mut self, min_lambda: V::Scalar) -> Self {
-        self.min_lambda = min_lambda;
-        self
-    }
-
-    /// With an [end of the ray](Self::max_lambda).
-    #[must_use]
-    pub const fn with_max_lambda(mut self, max_lambda: V::Scalar) -> Self {
-        self.max_lambda = max_lambda;
-        self
-    }
-
-    setters!(tolerance, max_iterations, warm_start, sub_algorithm, method);
-}
-
-impl<V: Vector> Default for RayCastOptions<V> {
-    fn default() -> Self {
-        Self::new()
-    }
+    setters!(min_lambda, max_lambda, tolerance, max_iterations, warm_start, sub_algorithm, method);
 }
 
 /// Options of [`linear_cast`](crate::linear_cast).
@@ -415,8 +363,9 @@ impl<V: Vector> LinearCastOptions<V> {
     ///
     /// What is left out is the faster search of [`CastMethod::Portal`], as in [`RayCastOptions::lean`], and all looks
     /// at the start beyond that of the cast. Of shapes that touch or overlap there the hit has a point of both, but no
-    /// normal, and it is certain only where the search happens to end with points of both around the start. With [`StartInContact::IfDeeper`] shapes that
-    /// may be in contact at the start are [undecided](crate::Outcome::Undecided).
+    /// normal, and it is certain only where the search happens to end with points of both around the start. With
+    /// [`StartInContact::IfDeeper`] shapes that may be in contact at the start are
+    /// [undecided](crate::Outcome::Undecided).
     #[must_use]
     pub fn lean() -> Self {
         Self {
@@ -433,10 +382,4 @@ impl<V: Vector> LinearCastOptions<V> {
     }
 
     setters!(max_time, target_distance, start_in_contact, tolerance, max_iterations, warm_start, sub_algorithm, method);
-}
-
-impl<V: Vector> Default for LinearCastOptions<V> {
-    fn default() -> Self {
-        Self::new()
-    }
 }
