@@ -116,7 +116,45 @@ compiled_once! {
         first: &FirstSupport<V>,
         observer: &mut Observer<'_, V>,
     ) -> Intersection<V> {
-        searched(shapes, cores, options, first, observer)
+        let pair = &mut Pair::of_cores(shapes, cores);
+        let size = pair.size(first.offset);
+        let frame = Frame::new(pair, first.offset, size);
+        if let Some(point) = first.point
+            && let Some(boxes) = boxes(pair, &frame)
+        {
+            let (zero, upper) = (Scalar::ZERO, Float::infinity());
+            let (v, w) = (first.direction, point + first.offset);
+            observer.show(|| Iterate { iteration: 0, simplex: &[], v, w, scale: Scalar::ONE, lower: zero, upper });
+            let (overlap, axis) = match boxes {
+                BoxesMeet::Meet => (true, None),
+                BoxesMeet::Apart(axis) => (false, Some(axis)),
+            };
+            return Intersection { overlap, axis, status: Status::Converged, iterations: 1 };
+        }
+        let mut state = Gjk::new(first.direction);
+        let meet = state.begin_at_closest(pair, &frame, size);
+        // What begins elsewhere looks along another direction.
+        let known =
+            if meet.is_none() { first.point.map(|point| (point * frame.per_unit, PointPair::default())) } else { None };
+        let max_iterations = options.max_iterations;
+        let options = GjkOptions {
+            limit: frame.radius,
+            closest_points: false,
+            sub_algorithm: options.sub_algorithm,
+            ..GjkOptions::new(state.normal, max_iterations)
+        };
+        let end = if meet == Some(true) { End::Overlap } else { gjk(&mut state, pair, frame, options, known, observer) };
+        let (apart, near) = (state.lower > frame.radius + frame.error, is_near_contact(&mut state, &frame));
+        let (overlap, axis) = match end {
+            End::Separated if apart => (false, state.axis.unit()),
+            End::Overlap if !near => (true, None),
+            _ => {
+                let left = max_iterations.saturating_sub(state.iterations);
+                let closely = closely(shapes.each(), left);
+                return Intersection { iterations: state.iterations + closely.iterations, ..closely };
+            }
+        };
+        Intersection { overlap, axis, status: Status::Converged, iterations: state.iterations }
     }
 }
 
@@ -127,54 +165,6 @@ struct FirstSupport<V> {
     direction: V,
     /// The support point, relative to the origins, if they are of sizes to be computed with in the world's unit.
     point: Option<V>,
-}
-
-fn searched<V: Vector>(
-    shapes: &dyn Shapes<Vector = V>,
-    cores: [Core<V>; 2],
-    options: &IntersectOptions<V>,
-    first: &FirstSupport<V>,
-    observer: &mut Observer<'_, V>,
-) -> Intersection<V> {
-    let pair = &mut Pair::of_cores(shapes, cores);
-    let size = pair.size(first.offset);
-    let frame = Frame::new(pair, first.offset, size);
-    if let Some(point) = first.point
-        && let Some(boxes) = boxes(pair, &frame)
-    {
-        let (zero, upper) = (Scalar::ZERO, Float::infinity());
-        let (v, w) = (first.direction, point + first.offset);
-        observer.show(|| Iterate { iteration: 0, simplex: &[], v, w, scale: Scalar::ONE, lower: zero, upper });
-        let (overlap, axis) = match boxes {
-            BoxesMeet::Meet => (true, None),
-            BoxesMeet::Apart(axis) => (false, Some(axis)),
-        };
-        return Intersection { overlap, axis, status: Status::Converged, iterations: 1 };
-    }
-    let mut state = Gjk::new(first.direction);
-    let meet = state.begin_at_closest(pair, &frame, size);
-    // What begins elsewhere looks along another direction.
-    let known =
-        if meet.is_none() { first.point.map(|point| (point * frame.per_unit, PointPair::default())) } else { None };
-    let max_iterations = options.max_iterations;
-    let options = GjkOptions {
-        limit: frame.radius,
-        closest_points: false,
-        sub_algorithm: options.sub_algorithm,
-        ..GjkOptions::new(state.normal, max_iterations)
-    };
-    let end = if meet == Some(true) { End::Overlap } else { gjk(&mut state, pair, frame, options, known, observer) };
-    let (apart, near) = (state.lower > frame.radius + frame.error, is_near_contact(&mut state, &frame));
-    let (overlap, axis) = match end {
-        End::Separated if apart => (false, state.axis.unit()),
-        End::Overlap if !near => (true, None),
-        _ => {
-            let left = max_iterations.saturating_sub(state.iterations);
-            let closely = closely(shapes.each(), left);
-            return Intersection { iterations: state.iterations + closely.iterations, ..closely };
-        }
-    };
-    Intersection { overlap, axis, status: Status::Converged, iterations: state.iterations }
 }
 
 /// The answer of the distance, which knows all that can be known of bodies near contact, and of curved ones goes on by

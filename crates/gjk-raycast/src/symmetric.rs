@@ -82,6 +82,11 @@ pub(crate) fn dot<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
     a.0 * b.0 + a.1 * b.1
 }
 
+/// The way from one place to another.
+pub(crate) fn way<S: Scalar>(from: Across<S>, to: Across<S>) -> Across<S> {
+    (to.0 - from.0, to.1 - from.1)
+}
+
 pub(crate) fn cross<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
     a.0 * b.1 - a.1 * b.0
 }

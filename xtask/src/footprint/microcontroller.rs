@@ -74,7 +74,8 @@ fn main() -> ! {
 ";
 
 /// Two boxes, of which the second is turned and moved as far as this along x.
-const BOXES: &str = "use gjk_raycast::convex_support::{Cuboid, Posed, glam::{Quat, Vec3}};
+const BOXES: &str = "use gjk_raycast::convex_support::{Cuboid, Cylinder, Posed, glam::{Quat, Vec3}};
+    let cylinder = Cylinder::<Vec3>::new(input(), 1.0).unwrap();
     let a = Cuboid::new(Vec3::splat(input())).unwrap();
     let b = Cuboid::new(Vec3::splat(0.5 * input())).unwrap();
     let b = Posed::new(b, Quat::from_rotation_x(input()), Vec3::new(AWAY * input(), 0.5, 0.25)).unwrap();
@@ -92,13 +93,16 @@ const ELLIPSOIDS: &str = "use ellip_margin::convex_support::{Ellipsoid, glam::{Q
     let (a, b) = (at(0.0), at(9.0));
     ";
 
-/// A question: its name, whether the boxes are 3 or 1.25 apart, and the expression that asks it.
+/// A question: its name, how far the boxes are from one another, and the expression that asks it.
 const QUESTIONS: &[(&str, &str, &str)] = &[
     ("`intersects`", "3.0", "intersects(&a, &b, Default::default())"),
     ("`distance`, lean", "3.0", "distance(&a, &b, DistanceOptions::lean())"),
     ("`distance`", "3.0", "distance(&a, &b, Default::default())"),
     ("`distance` and its gradient", "3.0", "distance(&a, &b, Default::default()).gradient()"),
     ("`signed_distance`", "1.25", "signed_distance(&a, &b, Default::default())"),
+    ("`signed_distance` of a cylinder", "1.25", "signed_distance(&cylinder, &b, Default::default())"),
+    ("`contact`", "1.25", "contact(&a, &b, 0.0, Default::default())"),
+    ("`contact` of a cylinder", "1.25", "contact(&cylinder, &b, 0.0, Default::default())"),
     ("`ray_cast`, lean", "3.0", "ray_cast(&b, ray, RayCastOptions::lean())"),
     ("`ray_cast`", "3.0", "ray_cast(&b, ray, Default::default())"),
     ("`linear_cast`, lean", "3.0", "linear_cast(&a, &b, motion, LinearCastOptions::lean())"),

@@ -4,7 +4,7 @@ use convex_support::Scalar;
 use smallvec::SmallVec;
 
 use super::outline::{ContactPart, Corner, Outline};
-use crate::symmetric::{Across, cross, dot};
+use crate::symmetric::{Across, cross, dot, way};
 
 /// A corner of the overlap, and what it is of the outline that was clipped and of the other.
 #[derive(Clone, Copy, Debug)]
@@ -35,26 +35,22 @@ pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> ClippedCo
     let count = other.corners.len();
     if count == 2 {
         let [from, to] = [other.corners[0], other.corners[1]];
-        let e = difference(to.at, from.at);
-        let across = difference(own.corners[own.corners.len() - 1].at, own.corners[0].at);
+        let e = way(from.at, to.at);
+        let across = way(own.corners[0].at, own.corners[own.corners.len() - 1].at);
         if own.corners.len() > 2 || !are_parallel(e, across) {
             return SmallVec::new();
         }
-        cut(&mut overlap, 0, ContactPart::Vertex(from.id), |at| dot(difference(at, from.at), e), other);
-        cut(&mut overlap, 1, ContactPart::Vertex(to.id), |at| dot(difference(to.at, at), e), other);
+        cut(&mut overlap, 0, ContactPart::Vertex(from.id), |at| dot(way(from.at, at), e), other);
+        cut(&mut overlap, 1, ContactPart::Vertex(to.id), |at| dot(way(at, to.at), e), other);
         return SmallVec::from_slice(overlap[0]);
     }
     for i in 0..count {
         let [from, to] = [other.corners[i], other.corners[(i + 1) % count]];
-        let e = difference(to.at, from.at);
+        let e = way(from.at, to.at);
         let part = ContactPart::Edge(from.id, to.id);
-        cut(&mut overlap, i, part, |at| cross(e, difference(at, from.at)), other);
+        cut(&mut overlap, i, part, |at| cross(e, way(from.at, at)), other);
     }
     SmallVec::from_slice(overlap[0])
-}
-
-fn difference<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
-    (a.0 - b.0, a.1 - b.1)
 }
 
 /// Segments are parallel where they are so to within about a degree.

@@ -11,7 +11,7 @@ use super::result::MAX_POINTS;
 use super::surface::{MAX_SUPPORT_POINTS, Side, Surface};
 use super::{Contact, ContactPoint};
 use crate::SignedDistance;
-use crate::symmetric::{Across, axes_across, cross, dot};
+use crate::symmetric::{Across, axes_across, cross, dot, way};
 
 /// As a part of the smaller shape's size: how near a corner of one shape's feature a point is that counts as the
 /// corner.
@@ -117,26 +117,16 @@ compiled_once! {
         within: V::Scalar,
         last: &[ContactPoint<V>],
     ) -> Contact<V> {
-        over_plane(shape, answer, within, last)
+        let (normal, origin) = (answer.normal, answer.point_b);
+        let across = axes_across(normal);
+        let plane = |normal| ContactPlane { normal, across, origin };
+        let core = shape.parts();
+        let reach = Reach::new(answer, within, core.extent + core.radius);
+        let sides =
+            [Side::new(shape, &core, plane(-normal), [-answer.signed_distance, -answer.lower]), Side::flat(plane(normal))];
+        let levels = [-answer.signed_distance, V::Scalar::ZERO];
+        Facing { sides, reach, last }.contact(answer, levels)
     }
-}
-
-/// [`manifold_over_plane`] behind a pointer.
-fn over_plane<V: Vector>(
-    a: &dyn Surface<V>,
-    answer: &SignedDistance<V>,
-    within: V::Scalar,
-    last: &[ContactPoint<V>],
-) -> Contact<V> {
-    let (normal, origin) = (answer.normal, answer.point_b);
-    let across = axes_across(normal);
-    let plane = |normal| ContactPlane { normal, across, origin };
-    let core = a.parts();
-    let reach = Reach::new(answer, within, core.extent + core.radius);
-    let sides =
-        [Side::new(a, &core, plane(-normal), [-answer.signed_distance, -answer.lower]), Side::flat(plane(normal))];
-    let levels = [-answer.signed_distance, V::Scalar::ZERO];
-    Facing { sides, reach, last }.contact(answer, levels)
 }
 
 /// What is taken for a corner.
@@ -286,9 +276,8 @@ impl<V: Vector> Facing<'_, V> {
     fn is_on_a_line(&self, overlap: &ClippedCorners<V::Scalar>, i: usize) -> bool {
         let n = overlap.len();
         let at = |i: usize| overlap[i % n].at;
-        let from = |a: Across<V::Scalar>, b: Across<V::Scalar>| (b.0 - a.0, b.1 - a.1);
-        let base = from(at(i + n - 1), at(i + 1));
-        let turn = cross(from(at(i + n - 1), at(i)), base);
+        let base = way(at(i + n - 1), at(i + 1));
+        let turn = cross(way(at(i + n - 1), at(i)), base);
         n > 2 && turn * turn <= dot(base, base) * (self.reach.slack * self.reach.slack)
     }
 

@@ -5,7 +5,7 @@ use core::cmp::Ordering;
 use convex_support::{Feature, Rim, Scalar, Vector};
 use smallvec::SmallVec;
 
-use crate::symmetric::{Across, cross, dot};
+use crate::symmetric::{Across, cross, dot, way};
 
 /// What a point of contact is of one shape: a corner of its feature, a point of an edge, or one of the face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,8 +109,8 @@ impl<S: Scalar> Outline<S> {
     /// The height at a place of the plane through the three corners that span most; linear along a segment.
     pub(crate) fn height(&self, at: Across<S>) -> S {
         let first = self.corners[0];
-        let edge = |c: &Corner<S>| (c.at.0 - first.at.0, c.at.1 - first.at.1);
-        let to = (at.0 - first.at.0, at.1 - first.at.1);
+        let edge = |c: &Corner<S>| way(first.at, c.at);
+        let to = way(first.at, at);
         let mut most = (S::ZERO, first.height);
         for pair in self.corners[1..].windows(2) {
             let [p, q] = [edge(&pair[0]), edge(&pair[1])];
@@ -143,7 +143,7 @@ pub(super) fn spread<S: Scalar>((x, y): Across<S>) -> S {
 /// After Andrew: of the points in their order along a long way through the hull, those that turn to the inside are
 /// dropped, on the way there and on the way back.
 pub(super) fn wrap<S: Scalar>(points: &mut [Corner<S>], noise: S, corners: &mut SmallVec<[Corner<S>; 16]>) {
-    let edge = |a: &Corner<S>, b: &Corner<S>| (b.at.0 - a.at.0, b.at.1 - a.at.1);
+    let edge = |a: &Corner<S>, b: &Corner<S>| way(a.at, b.at);
     let Some(&first) = points.first() else { return };
     let longer = |way: Across<S>, e: Across<S>| if dot(e, e) > dot(way, way) { e } else { way };
     let way = points.iter().map(|p| edge(&first, p)).fold((S::ZERO, S::ZERO), longer);

@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 
 use super::manifold::Candidate;
 use super::result::MAX_POINTS;
-use crate::symmetric::{Across, cross};
+use crate::symmetric::{Across, cross, way};
 
 /// The part of the area that may be lost, so that of corners that do as well the same are kept, whichever rounding
 /// prefers; four times as much to keep those of the last manifold.
@@ -30,10 +30,6 @@ pub(super) fn reduced<S: Scalar>(
     SmallVec::from_buf(spanning(candidates, margin, rank))
 }
 
-fn from<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
-    (b.0 - a.0, b.1 - a.1)
-}
-
 /// Four corners of a convex polygon of more, counterclockwise, that span as much as any but for a part of that, the
 /// `margin`: of those that do, the ones of least rank.
 ///
@@ -44,7 +40,7 @@ fn spanning<S: Scalar>(polygon: &[Candidate<S>], margin: f64, rank: impl Fn(usiz
     // Twice around.
     let at: SmallVec<[Across<S>; 32]> = polygon.iter().chain(polygon).map(|corner| corner.at).collect();
     let ranks: SmallVec<[Rank; 16]> = (0..count).map(rank).collect();
-    let twice = |i: usize, j: usize, k: usize| cross(from(at[i], at[j]), from(at[i], at[k]));
+    let twice = |i: usize, j: usize, k: usize| cross(way(at[i], at[j]), way(at[i], at[k]));
     let mut diagonals: SmallVec<[_; 32]> = SmallVec::new();
     let mut most = S::ZERO;
     for i in 0..count - 2 {
@@ -97,7 +93,7 @@ mod tests {
 
     fn area(polygon: &[Candidate<f64>], [i, j, k, l]: [usize; 4]) -> f64 {
         let at = |i: usize| polygon[i].at;
-        0.5 * cross(from(at(i), at(k)), from(at(j), at(l)))
+        0.5 * cross(way(at(i), at(k)), way(at(j), at(l)))
     }
 
     /// Of all quadrilaterals of random polygons none spans more than a thirtieth more. Exchanging one corner at a time

@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 
 use super::outline::{ContactPlane, Corner, Outline, spread, wrap};
 use crate::level::Level;
-use crate::symmetric::{Across, cross, dot};
+use crate::symmetric::{Across, cross, dot, way};
 
 /// Support points after which a height is given up. A polytope takes a few; on what is curved each takes three quarters
 /// of the error away.
@@ -56,7 +56,7 @@ impl<S: Scalar> Tangent<S> {
         let first = corners[0];
         let edge = |i: usize| {
             let corner: Corner<S> = corners[i];
-            (difference(first.at, corner.at), corner.height - first.height)
+            (way(first.at, corner.at), corner.height - first.height)
         };
         let (p, rise) = edge(1);
         let gradient = if corners.len() == 2 {
@@ -71,7 +71,7 @@ impl<S: Scalar> Tangent<S> {
     }
 
     fn level(&self, at: Across<S>) -> S {
-        self.level + dot(self.gradient, difference(self.at, at))
+        self.level + dot(self.gradient, way(self.at, at))
     }
 }
 
@@ -253,8 +253,8 @@ impl<'s, V: Vector> Side<'s, V> {
     /// shape's.
     fn is_aside(&self, at: Across<V::Scalar>) -> bool {
         let [p, q] = self.outline.corners[..] else { return false };
-        let e = difference(p.at, q.at);
-        let turn = cross(e, difference(p.at, at));
+        let e = way(p.at, q.at);
+        let turn = cross(e, way(p.at, at));
         turn * turn > dot(e, e) * (self.noise * self.noise)
     }
 
@@ -265,7 +265,7 @@ impl<'s, V: Vector> Side<'s, V> {
             return SmallVec::from_slice(corners);
         }
         let first = corners[0];
-        let edge = |to: Across<V::Scalar>| difference(first.at, to);
+        let edge = |to: Across<V::Scalar>| way(first.at, to);
         let is_behind = |i: &usize| cross(edge(corners[*i].at), edge(at)) <= V::Scalar::ZERO;
         let next = (2..corners.len()).find(is_behind).unwrap_or(corners.len() - 1);
         SmallVec::from_slice(&[first, corners[next - 1], corners[next]])
@@ -280,14 +280,14 @@ impl<'s, V: Vector> Side<'s, V> {
         for _ in 0..MAX_SUPPORT_POINTS {
             let n = around.len();
             let outward = |i: usize| {
-                let (x, y) = difference(around[i].at, around[(i + 1) % n].at);
+                let (x, y) = way(around[i].at, around[(i + 1) % n].at);
                 (y, -x)
             };
-            let is_beyond = |i: &usize| dot(outward(*i), difference(around[*i].at, at)) > V::Scalar::ZERO;
+            let is_beyond = |i: &usize| dot(outward(*i), way(around[*i].at, at)) > V::Scalar::ZERO;
             let Some(i) = (0..n).find(is_beyond) else { return Some(around) };
             let (x, y) = outward(i);
             let next = self.farthest(e * x + f * y)?;
-            if !(dot((x, y), difference(at, next.at)) >= V::Scalar::ZERO) {
+            if !(dot((x, y), way(at, next.at)) >= V::Scalar::ZERO) {
                 return None;
             }
             // Counterclockwise, as the place is between these.
@@ -303,9 +303,9 @@ type Corners<S> = SmallVec<[Corner<S>; 3]>;
 /// beyond an edge by rounding has the height of the nearest point of the edges: the plane of a steep triangle is soon
 /// far from the shape there.
 fn between<S: Scalar>(corners: &[Corner<S>], at: Across<S>) -> S {
-    let to = |i: usize| difference(at, corners[i].at);
+    let to = |i: usize| way(at, corners[i].at);
     let of_edge = |i: usize, j: usize| {
-        let e = difference(to(i), to(j));
+        let e = way(to(i), to(j));
         let share = (-dot(e, to(i)) / dot(e, e)).max(S::ZERO).min(S::ONE);
         let (x, y) = (to(i).0 + e.0 * share, to(i).1 + e.1 * share);
         (dot((x, y), (x, y)), corners[i].height + (corners[j].height - corners[i].height) * share)
@@ -331,23 +331,18 @@ fn spanned<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
     if cancels { dot_minus([(a.0, b.1), (-a.1, b.0)], S::ZERO) } else { p - q }
 }
 
-fn difference<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
-    (b.0 - a.0, b.1 - a.1)
-}
-
 /// Whether a point is behind another one, beyond a side of the shape that is so steep.
 fn is_hidden<S: Scalar>(low: &Corner<S>, high: &Corner<S>, noise: S) -> bool {
-    let (e, rise) = (difference(low.at, high.at), high.height - low.height);
+    let (e, rise) = (way(low.at, high.at), high.height - low.height);
     rise > noise && rise * rise > dot(e, e) * S::from_f64(STEEP * STEEP)
 }
 
 /// Replaces one of the corners around a place, or joins the two ends of a segment, so that the place is still between
 /// them.
 fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, noise: S) -> bool {
-    let from = difference;
     if let [p, q] = around[..] {
-        let e = from(p.at, q.at);
-        let turn = cross(e, from(p.at, next.at));
+        let e = way(p.at, q.at);
+        let turn = cross(e, way(p.at, next.at));
         if turn.abs() > spread(e) * noise {
             // Counterclockwise.
             if turn < S::ZERO {
@@ -355,14 +350,14 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
             }
             around.push(next);
         } else {
-            let is_beyond = dot(e, from(at, next.at)) > S::ZERO;
+            let is_beyond = dot(e, way(at, next.at)) > S::ZERO;
             around[usize::from(is_beyond)] = next;
         }
         return true;
     }
     // The place may be that far on the other side, but not behind what is next, as where both sides lead the same way.
     let side = |corner: &Corner<S>| {
-        let (e, to) = (from(next.at, corner.at), from(next.at, at));
+        let (e, to) = (way(next.at, corner.at), way(next.at, at));
         let allowed = spread(e) * noise;
         (cross(e, to), allowed, dot(e, to) >= -allowed)
     };
@@ -371,8 +366,8 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
         let (p, q) = (around[i], around[(i + 1) % 3]);
         let ((left, allowed, ahead), (right, as_well, too)) = (side(&p), side(&q));
         // No plane is known by corners that are on a line but for rounding.
-        let base = from(p.at, q.at);
-        let is_known = cross(base, from(p.at, next.at)) > spread(base) * noise;
+        let base = way(p.at, q.at);
+        let is_known = cross(base, way(p.at, next.at)) > spread(base) * noise;
         if is_known && left >= -allowed && right <= as_well && (ahead || too) {
             let corners = SmallVec::from_buf([p, q, next]);
             let level = between(&corners, at);
