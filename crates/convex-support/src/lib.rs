@@ -108,6 +108,8 @@ pub use bvh::{
 };
 pub use closest_point::closest_point;
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};
+#[doc(hidden)]
+pub use compiled_once::of_vectors;
 pub use core_set::{Core, CoreKind, Rounding};
 pub use error::InvalidShape;
 pub use hint::Hint;

@@ -67,8 +67,7 @@ macro_rules! in_static {
                 static DVEC2: $Table<DVec2> = $Table::TABLE;
                 static DVEC3: $Table<DVec3> = $Table::TABLE;
                 let all: [&'static dyn core::any::Any; 5] = [&VEC2, &VEC3, &VEC3A, &DVEC2, &DVEC3];
-                let found = all.into_iter().find_map(|table| table.downcast_ref::<$Table<V>>());
-                $crate::extra::Extra::of(found.expect("`Vector` is sealed, and these are its types"))
+                $crate::extra::Extra::of(convex_support::of_vectors::<V, _>(all))
             }
         }
     };
