@@ -16,8 +16,7 @@ type Rows<S> = [[S; MAX]; MAX];
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V::Scalar: serde::Serialize")))]
-#[cfg_attr(feature = "serde", serde(bound(deserialize = "V::Scalar: serde::Deserialize<'de>")))]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct PairHessian<V: Vector> {
     /// By the pose of `a`; symmetric.
     pub a: MotionHessian<V>,

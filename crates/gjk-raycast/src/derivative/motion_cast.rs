@@ -10,11 +10,7 @@ use crate::{MotionHit, RigidMotion, Trajectory};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct MotionCastGradient<V: Vector> {
     /// By the pose of `a` at the start. Its motion stays what it is, the centre included.
     pub pose_a: MotionGradient<V>,

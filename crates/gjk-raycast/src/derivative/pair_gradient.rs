@@ -9,11 +9,7 @@ use crate::{Distance, RigidMotion, SignedDistance};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct PairGradient<V: Vector> {
     /// By the motion of `a`: the normal, at the closest point of `a`.
     pub a: MotionGradient<V>,

@@ -9,11 +9,7 @@ use crate::{Ray, RayHit};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct RayCastGradient<V: Vector> {
     /// By the pose of the target.
     pub target: MotionGradient<V>,

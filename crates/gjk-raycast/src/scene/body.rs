@@ -1,55 +1,81 @@
-//! What a scene needs to know of a single cast, whatever was cast.
+//! A body of a scene, and what a single query says of it.
 
-use convex_support::{AngularVelocity as _, Scalar as _, SupportMap, Vector};
+use convex_support::{AngularVelocity as _, Scalar as _, ScalarOf, SupportMap, Vector};
 
-use super::Body;
-use super::result::BodyHit;
 use crate::{
-    ChainMotion, LinearCast, LinearCastOptions, LinearHit, Motion, MotionCast, MotionCastOptions, MotionHit,
-    MotionIterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, RigidMotion, Status, Trajectory,
-    linear_cast, motion_cast, motion_cast_with, ray_cast,
+    ChainMotion, Contact, Distance, DistanceOptions, HalfSpace, LinearCast, LinearCastOptions, Motion, MotionCast,
+    MotionCastOptions, MotionHit, MotionIterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RigidMotion,
+    SignedDistance, SignedDistanceOptions, Trajectory, contact, distance, linear_cast, motion_cast, motion_cast_with,
+    ray_cast, signed_distance,
 };
 
-/// The answer of one cast: `H` is a hit, `S` its λ or time.
-pub(super) struct SingleAnswer<H, S> {
-    /// The hit, with its λ or time.
-    pub(super) hit: Option<(S, H)>,
-    pub(super) is_undecided: bool,
-    pub(super) lower: S,
-    pub(super) upper: S,
-    pub(super) status: Status,
-}
-
-impl<H, S> SingleAnswer<H, S> {
-    /// The hit as that of a body.
-    pub(super) fn of(self, body: usize) -> Option<BodyHit<H, S>> {
-        let Self { hit, lower, upper, status, .. } = self;
-        hit.map(|(_, hit)| BodyHit { body, hit, lower, upper, status })
-    }
-}
-
-impl<V: Vector> From<RayCast<V>> for SingleAnswer<RayHit<V>, V::Scalar> {
-    fn from(RayCast { outcome, lower, upper, status, .. }: RayCast<V>) -> Self {
-        let is_undecided = matches!(outcome, Outcome::Undecided);
-        Self { hit: outcome.hit().map(|hit| (hit.lambda, hit)), is_undecided, lower, upper, status }
-    }
-}
-
-impl<V: Vector> From<LinearCast<V>> for SingleAnswer<LinearHit<V>, V::Scalar> {
-    fn from(LinearCast { outcome, lower, upper, status, .. }: LinearCast<V>) -> Self {
-        let is_undecided = matches!(outcome, Outcome::Undecided);
-        Self { hit: outcome.hit().map(|hit| (hit.time, hit)), is_undecided, lower, upper, status }
-    }
-}
-
-impl<V: Vector> From<MotionCast<V>> for SingleAnswer<MotionHit<V>, V::Scalar> {
-    fn from(MotionCast { outcome, lower, upper, status, .. }: MotionCast<V>) -> Self {
-        let is_undecided = matches!(outcome, Outcome::Undecided);
-        Self { hit: outcome.hit().map(|hit| (hit.time, hit)), is_undecided, lower, upper, status }
-    }
+/// A body of a [`Scene`]: a bounded shape, or a half-space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "S: serde::Serialize, HalfSpace<S::Vector>: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "S: serde::Deserialize<'de>, HalfSpace<S::Vector>: serde::Deserialize<'de>"))
+)]
+pub enum Body<S: SupportMap> {
+    /// A bounded convex body.
+    Convex(S),
+    /// All on one side of a plane.
+    HalfSpace(HalfSpace<S::Vector>),
 }
 
 impl<S: SupportMap> Body<S> {
+    /// The bounded body, if it is one.
+    #[must_use]
+    pub fn convex(&self) -> Option<&S> {
+        match self {
+            Self::Convex(body) => Some(body),
+            Self::HalfSpace(_) => None,
+        }
+    }
+
+    /// The distance from a shape to this body.
+    #[inline]
+    pub(super) fn distance_from<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        options: DistanceOptions<S::Vector>,
+    ) -> Distance<S::Vector> {
+        match self {
+            Self::Convex(body) => distance(shape, body, options),
+            Self::HalfSpace(half_space) => half_space.distance_from(shape),
+        }
+    }
+
+    /// How far a shape, `a`, is from this body, `b`, or how deep in it, by
+    /// [`signed_distance`](crate::signed_distance()) or, for a half-space, by
+    /// [`HalfSpace::signed_distance`](crate::HalfSpace::signed_distance), which needs no options.
+    pub fn signed_distance<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        options: SignedDistanceOptions<S::Vector>,
+    ) -> SignedDistance<S::Vector> {
+        match self {
+            Self::Convex(body) => signed_distance(shape, body, options),
+            Self::HalfSpace(half_space) => half_space.signed_distance(shape),
+        }
+    }
+
+    /// The contact of a shape, `a`, with this body, `b`, by [`contact`](crate::contact()) or, for a half-space, by
+    /// [`HalfSpace::contact`](crate::HalfSpace::contact), which needs no options; `None` if they are farther apart than
+    /// `within`. [`Among::contacts_of`](crate::Among::contacts_of) asks all bodies that are near.
+    pub fn contact<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        within: ScalarOf<S>,
+        options: SignedDistanceOptions<S::Vector>,
+    ) -> Option<Contact<S::Vector>> {
+        match self {
+            Self::Convex(body) => contact(shape, body, within, options),
+            Self::HalfSpace(half_space) => half_space.contact(shape, within),
+        }
+    }
+
     #[inline]
     pub(super) fn ray_cast(
         &self,
