@@ -10,27 +10,19 @@
 //! Nothing but the answer is needed for that. Whether the normal and the points are the only ones, and how they move,
 //! is asked of the shapes: [`ClosestFeatures`].
 
-mod at_contact;
 mod closest_features;
 mod features_of;
+mod gradient;
 mod hessian;
-mod linear_cast;
 mod look;
-mod motion_cast;
 mod overlap;
-mod pair_gradient;
-mod rate;
-mod ray_cast;
 mod refinement;
 mod smoothness;
 mod span;
 mod velocities;
 
 pub use closest_features::ClosestFeatures;
+pub use gradient::{LinearCastGradient, MotionCastGradient, PairGradient, RayCastGradient, RigidMotionGradient};
 pub use hessian::PairHessian;
-pub use linear_cast::LinearCastGradient;
-pub use motion_cast::{MotionCastGradient, RigidMotionGradient};
-pub use pair_gradient::PairGradient;
-pub use ray_cast::RayCastGradient;
 pub use smoothness::Smoothness;
 pub use velocities::ClosestVelocities;

@@ -4,7 +4,7 @@ use convex_support::{AngularVelocity as _, Scalar as _, ScalarOf, SupportMap, Ve
 
 use crate::{
     ChainMotion, Contact, Distance, DistanceOptions, HalfSpace, LinearCast, LinearCastOptions, Motion, MotionCast,
-    MotionCastOptions, MotionHit, MotionIterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RigidMotion,
+    MotionCastOptions, MotionHit, MotionIterate, Ray, RayCast, RayCastError, RayCastOptions, RigidMotion,
     SignedDistance, SignedDistanceOptions, Trajectory, contact, distance, linear_cast, motion_cast, motion_cast_with,
     ray_cast, signed_distance,
 };
@@ -136,10 +136,12 @@ impl<S: SupportMap> Body<S> {
             Self::HalfSpace(half_space) => half_space,
         };
         let cast = half_space.motion_cast(shape, ChainMotion::new(&seen_from(of_body, motion)), options)?;
-        let Outcome::Hit(hit) = cast.outcome else { return Ok(cast) };
-        let place = of_body.displacement(hit.time);
-        let normal = hit.normal.map(|normal| place.rotation() * normal);
-        Ok(MotionCast { outcome: Outcome::Hit(MotionHit { point: place.of(hit.point), normal, ..hit }), ..cast })
+        let outcome = cast.outcome.map(|hit| {
+            let place = of_body.displacement(hit.time);
+            let normal = hit.normal.map(|normal| place.rotation() * normal);
+            MotionHit { point: place.of(hit.point), normal, ..hit }
+        });
+        Ok(MotionCast { outcome, ..cast })
     }
 }
 

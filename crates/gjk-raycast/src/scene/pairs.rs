@@ -207,7 +207,7 @@ fn between<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
     let distance = match (a, b) {
         (Body::Convex(a), Body::Convex(b)) => distance(a, b, options),
         (Body::Convex(a), Body::HalfSpace(b)) => b.distance_from(a),
-        (Body::HalfSpace(a), Body::Convex(b)) => a.distance_to(b),
+        (Body::HalfSpace(a), Body::Convex(b)) => a.distance_from(b).reversed(),
         (Body::HalfSpace(_), Body::HalfSpace(_)) => return None,
     };
     (distance.distance <= options.limit).then_some(PairDistance { a: i, b: j, distance })
