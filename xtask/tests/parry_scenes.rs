@@ -73,7 +73,8 @@ fn answers_agree<S: convex_support::SupportMap<Vector = DVec3>>(
         let ray = query::Ray::new(source, direction);
         let expected = theirs.cast_ray(whole, &ray, 10.0, true);
         let ray = Ray { source: ours(source), direction: ours(direction) };
-        let first = scene.ray_cast(ray, RayCastOptions::default().with_max_lambda(10.0)).expect("a good ray").first;
+        let first =
+            scene.all().ray_cast(ray, RayCastOptions::default().with_max_lambda(10.0)).expect("a good ray").first;
         assert_eq!(expected.is_some(), first.is_some(), "{expected:?} or {first:?}");
         if let (Some(expected), Some(first)) = (expected, first) {
             hits += 1;
@@ -84,7 +85,7 @@ fn answers_agree<S: convex_support::SupportMap<Vector = DVec3>>(
         let expected = query::distance(whole, theirs, &Pose::from_translation(place), &shape::Ball::new(0.25));
         let expected = expected.expect("parry knows how").distance;
         let ball = Posed::translated(Ball::new(0.25).expect("a radius"), ours(place)).expect("finite");
-        let nearest = scene.nearest(&ball, DistanceOptions::default()).nearest.expect("there are bodies");
+        let nearest = scene.all().nearest(&ball, DistanceOptions::default()).nearest.expect("there are bodies");
         apart += u32::from(expected > 0.0);
         let found = nearest.distance.distance;
         assert!((expected - found).abs() < 1e-6, "{expected} or {found}");

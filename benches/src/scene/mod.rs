@@ -97,19 +97,19 @@ pub fn balls<V: Vector>(places: &[[f64; 3]]) -> Scene<Posed<Ball<V>>> {
 /// Never: questions are finite, and none moves at zero velocity.
 pub fn ray_cast<S: SupportMap>(scene: &Scene<S>, [source, direction, _]: Question) -> SceneRayCast<S::Vector> {
     let ray = Ray { source: vector(source), direction: vector(direction) };
-    scene.ray_cast(ray, RayCastOptions::default()).expect("a good ray")
+    scene.all().ray_cast(ray, RayCastOptions::default()).expect("a good ray")
 }
 
 /// How far the nearest body is from a ball.
 pub fn nearest<S: SupportMap>(scene: &Scene<S>, [source, ..]: Question) -> f64 {
-    let nearest = scene.nearest(&posed(ball(), source), DistanceOptions::default()).nearest;
+    let nearest = scene.all().nearest(&posed(ball(), source), DistanceOptions::default()).nearest;
     nearest.map_or(f64::INFINITY, |nearest| nearest.distance.distance.as_f64())
 }
 
 /// The bodies near a ball.
 pub fn all_within<S: SupportMap>(scene: &Scene<S>, [source, ..]: Question, found: &mut Vec<BodyDistance<S::Vector>>) {
     let within = Scalar::from_f64(WITHIN);
-    scene.all_within(&posed(ball(), source), within, DistanceOptions::default(), found);
+    scene.all().all_within(&posed(ball(), source), within, DistanceOptions::default(), found);
 }
 
 /// The first body that a ball meets.
@@ -118,7 +118,7 @@ pub fn all_within<S: SupportMap>(scene: &Scene<S>, [source, ..]: Question, found
 /// Never: questions are finite.
 pub fn linear_cast<S: SupportMap>(scene: &Scene<S>, [source, velocity, _]: Question) -> SceneLinearCast<S::Vector> {
     let motion = Motion { velocity_a: vector(velocity), velocity_b: Vector::ZERO };
-    scene.linear_cast(&posed(ball(), source), motion, LinearCastOptions::default()).expect("a good motion")
+    scene.all().linear_cast(&posed(ball(), source), motion, LinearCastOptions::default()).expect("a good motion")
 }
 
 /// The first body that a box meets as it turns.
@@ -132,10 +132,10 @@ pub fn motion_cast<V: Vector<AngularVelocity = V>, S: SupportMap<Vector = V>>(
     let [velocity, angular_velocity, center] = [velocity, angular_velocity, source].map(vector);
     let motion = RigidMotion { velocity, angular_velocity, center };
     let options = MotionCastOptions::default().with_max_time(Scalar::from_f64(END));
-    scene.motion_cast(&posed(cuboid(), source), motion, options).expect("a good motion")
+    scene.all().motion_cast(&posed(cuboid(), source), motion, options).expect("a good motion")
 }
 
 /// All pairs that are near each other.
 pub fn pairs<S: SupportMap>(scene: &Scene<S>, found: &mut Vec<PairDistance<S::Vector>>) {
-    scene.pairs_within(Scalar::from_f64(NEAR), DistanceOptions::default(), found);
+    scene.all().pairs_within(Scalar::from_f64(NEAR), DistanceOptions::default(), found);
 }

@@ -66,7 +66,7 @@ pub fn free_margins_into<V: Vector>(
 ) -> Result<(), InvalidQuery> {
     let (count, of) = (count(e1, e2)?, pairs(e1, e2));
     margins.reserve(count);
-    in_parts(count, margins, |part, margins| some(part, of, options, margins));
+    in_parts(count, margins, |part, margins| each(part, of, options, |_, margin| margins.push(margin)));
     Ok(())
 }
 
@@ -97,13 +97,10 @@ pub fn map_margins<'a, V: Vector, T: Send>(
     let (count, of) = (count(e1, e2)?, pairs(e1, e2));
     let mut answers = Vec::with_capacity(count);
     in_parts(count, &mut answers, |part, answers| {
-        let first = part.start;
-        let mut margins = Vec::with_capacity(part.len());
-        some(part, of, options, &mut margins);
-        answers.extend(margins.into_iter().enumerate().map(|(k, margin)| {
-            let (e1, e2) = of(first + k);
-            ask(EllipsoidPair::new(e1, e2, options).answer(margin))
-        }));
+        each(part, of, options, |k, margin| {
+            let (e1, e2) = of(k);
+            answers.push(ask(EllipsoidPair::new(e1, e2, options).answer(margin)));
+        });
     });
     Ok(answers)
 }
@@ -142,7 +139,7 @@ pub fn map_margins_into<'a, V: Vector, T: Send>(
         return Err(InvalidQuery::AnswersLength { pairs, answers: answers.len() });
     }
     by_parts(answers, |first, answers| {
-        tell_some(first..first + answers.len(), of, options, |k, margin| {
+        each(first..first + answers.len(), of, options, |k, margin| {
             let (e1, e2) = of(k);
             answers[k - first] = ask(EllipsoidPair::new(e1, e2, options).answer(margin));
         });
@@ -244,30 +241,8 @@ fn by_parts<T>(column: &mut [T], fill: impl Fn(usize, &mut [T])) {
     fill(0, column);
 }
 
-/// The margins of the pairs of a range.
-fn some<'a, V: Vector>(
-    range: Range<usize>,
-    of: impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
-    options: MarginOptions,
-    margins: &mut Vec<Margin<V>>,
-) {
-    let Range { start, end } = range;
-    let mut next = start;
-    if has_lanes(options) {
-        next = if V::DIM == 2 {
-            by_eights::<V, 2>(start..end, &of, options, margins)
-        } else {
-            by_eights::<V, 3>(start..end, &of, options, margins)
-        };
-    }
-    margins.extend((next..end).map(|k| {
-        let (e1, e2) = of(k);
-        free_margin(e1, e2, options)
-    }));
-}
-
-/// The same, told one by one in their order.
-fn tell_some<'a, V: Vector>(
+/// Tells the margins of the pairs of a range, one by one in their order.
+fn each<'a, V: Vector>(
     range: Range<usize>,
     of: impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
     options: MarginOptions,
@@ -277,9 +252,9 @@ fn tell_some<'a, V: Vector>(
     let mut next = start;
     if has_lanes(options) {
         next = if V::DIM == 2 {
-            tell_by_eights::<V, 2>(start..end, &of, options, &mut tell)
+            by_eights::<V, 2>(start..end, &of, options, &mut tell)
         } else {
-            tell_by_eights::<V, 3>(start..end, &of, options, &mut tell)
+            by_eights::<V, 3>(start..end, &of, options, &mut tell)
         };
     }
     for k in next..end {
@@ -293,46 +268,8 @@ fn has_lanes(options: MarginOptions) -> bool {
     options.method == Method::Automatic && options.max_iterations >= STRAIGHT_STEPS
 }
 
-/// Sets the lanes to the eight pairs from the `next` one on, and solves them.
-#[inline(always)]
-fn solve_eight<'a, V: Vector, const N: usize>(
-    next: usize,
-    of: &impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
-    options: MarginOptions,
-    pairs: &mut Pairs<N>,
-    answers: &mut Answers<N>,
-) {
-    for lane in 0..LANES {
-        let (e1, e2) = of(next + lane);
-        pairs.set(lane, &Pair::new(e1, e2));
-    }
-    solve_lanes(pairs, options.tolerance(), answers);
-}
-
 /// The margins of as many of a range as make whole lanes; where it ended.
 fn by_eights<'a, V: Vector, const N: usize>(
-    Range { start, end }: Range<usize>,
-    of: impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
-    options: MarginOptions,
-    margins: &mut Vec<Margin<V>>,
-) -> usize {
-    let (mut pairs, mut answers) = (Pairs::<N>::ZERO, Answers::<N>::ZERO);
-    let mut next = start;
-    while next + LANES <= end {
-        solve_eight(next, &of, options, &mut pairs, &mut answers);
-        let first = margins.len();
-        margins.extend((0..LANES).map(|lane| answers.get(lane)));
-        for lane in (0..LANES).filter(|&lane| answers.is_answer[lane] == 0.0) {
-            let (e1, e2) = of(next + lane);
-            margins[first + lane] = free_margin(e1, e2, options);
-        }
-        next += LANES;
-    }
-    next
-}
-
-/// The same, told one by one in their order.
-fn tell_by_eights<'a, V: Vector, const N: usize>(
     Range { start, end }: Range<usize>,
     of: impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
     options: MarginOptions,
@@ -341,7 +278,11 @@ fn tell_by_eights<'a, V: Vector, const N: usize>(
     let (mut pairs, mut answers) = (Pairs::<N>::ZERO, Answers::<N>::ZERO);
     let mut next = start;
     while next + LANES <= end {
-        solve_eight(next, &of, options, &mut pairs, &mut answers);
+        for lane in 0..LANES {
+            let (e1, e2) = of(next + lane);
+            pairs.set(lane, &Pair::new(e1, e2));
+        }
+        solve_lanes(&pairs, options.tolerance(), &mut answers);
         for lane in 0..LANES {
             let margin = if answers.is_answer[lane] == 0.0 {
                 let (e1, e2) = of(next + lane);

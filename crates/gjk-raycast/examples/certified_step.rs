@@ -86,7 +86,7 @@ impl Filter<'_> {
         self.near.resize(self.arm.len(), Vec::new());
         for (link, near) in self.near.iter_mut().enumerate() {
             let body = self.arm.placed(link, 0, &self.at)?;
-            self.scene.nearest_k(&body, NEAREST, DistanceOptions::new(), near);
+            self.scene.all().nearest_k(&body, NEAREST, DistanceOptions::new(), near);
         }
         Ok(())
     }
@@ -131,7 +131,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let at = DVec3::new(random(seed), random(seed), random(seed)) * 1.5;
         let is_far = at.length() > 0.8 || balls.len() < 12 && at.length() > 0.4;
         let ball = Posed::translated(Ball::new(0.01 + 0.01 * random(seed).abs())?, at)?;
-        let near = clear.nearest(&ball, DistanceOptions::new()).nearest;
+        let near = clear.all().nearest(&ball, DistanceOptions::new()).nearest;
         if is_far && near.is_some_and(|near| near.distance.lower > 2.0 * MARGIN) {
             balls.push(ball);
         }

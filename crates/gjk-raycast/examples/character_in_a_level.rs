@@ -68,7 +68,7 @@ impl Character {
             .with_start_in_contact(StartInContact::IfDeeper);
         let body = self.body().expect("the character is at a finite place");
         let motion = Motion { velocity_a: self.velocity, ..Motion::default() };
-        let first = level.linear_cast(&body, motion, options)?.first;
+        let first = level.all().linear_cast(&body, motion, options)?.first;
         Ok(first
             .map(|first| (first.hit.time, first.hit.normal.expect("hits have one where only deeper motions count"))))
     }
@@ -88,7 +88,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // What it touches.
     let mut contacts = Vec::new();
-    level.contacts_of(&character.body()?, 2.0 * SKIN, SignedDistanceOptions::default(), &mut contacts);
+    level.all().contacts_of(&character.body()?, 2.0 * SKIN, SignedDistanceOptions::default(), &mut contacts);
     for BodyContact { body, contact } in &contacts {
         println!("touches body {body} in {} points, normal {:.3}", contact.points().len(), contact.normal);
         assert!((contact.distance.signed_distance - SKIN).abs() < 1e-3, "{}", contact.distance.signed_distance);

@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut of_robot, mut of_yard) = (0, 0);
     for (k, &ray) in rays.iter().enumerate() {
         let on_robot = own[0][k].lambda.min(own[1][k].lambda);
-        let cast = scene.ray_cast(ray, options.with_max_lambda(on_robot.min(120.0)))?;
+        let cast = scene.all().ray_cast(ray, options.with_max_lambda(on_robot.min(120.0)))?;
         of_robot += u32::from(on_robot < f64::INFINITY);
         of_yard += u32::from(cast.first.is_some());
         ranges

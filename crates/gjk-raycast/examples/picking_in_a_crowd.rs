@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for pixel in 0..20_000_u32 {
         let (x, y) = (f64::from(pixel % 200) / 100.0 - 1.0, f64::from(pixel / 200) / 200.0 - 0.5);
         let ray = Ray { source: eye, direction: DVec3::new(x, y - 0.1, 1.0) };
-        let answer = scene.ray_cast(ray, options)?;
+        let answer = scene.all().ray_cast(ray, options)?;
         hits += u32::from(answer.first.is_some());
         all.nodes += answer.work.nodes;
         all.tested += answer.work.tested;

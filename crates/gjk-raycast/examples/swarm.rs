@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for frame in 0..60_u32 {
         let time = f64::from(frame) / 60.0;
         scene.update(|index, before| at(index, time).unwrap_or(*before))?;
-        let work = scene.pairs_within(NEAR, DistanceOptions::default(), &mut pairs);
+        let work = scene.all().pairs_within(NEAR, DistanceOptions::default(), &mut pairs);
         near += pairs.len();
         tested += work.tested;
         if frame == 59 {

@@ -8,10 +8,15 @@ use alloc::vec::Vec;
 
 use convex_support::Vector;
 use num_traits::Float;
-use serde::de::{Deserialize, Deserializer, Error as _};
+use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error as _};
 use serde::ser::{Error as _, Serialize, Serializer};
 
 use crate::{Contact, ContactPoint, HalfSpace, SignedDistance};
+
+/// Vectors that can be written and read, with their coordinates, as all are.
+pub trait VectorData: Vector<Scalar: Serialize + DeserializeOwned> + Serialize + DeserializeOwned {}
+
+impl<V: Vector<Scalar: Serialize + DeserializeOwned> + Serialize + DeserializeOwned> VectorData for V {}
 
 /// Writes `value` as none if it is `infinite`. Other numbers that are not finite are refused where the format may not
 /// have them: they would be read as infinite.

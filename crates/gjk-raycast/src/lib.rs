@@ -71,7 +71,7 @@
 //!   `no_std` targets with `alloc`, to the same bits.
 //! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
 //!   instead.
-//! - `rayon`: `par_ray_casts`, `Scene::par_ray_casts`, `Among::par_pairs_within`, `Among::par_contacts_within` and
+//! - `rayon`: `par_ray_casts`, `Among::par_ray_casts`, `Among::par_pairs_within`, `Among::par_contacts_within` and
 //!   `Linkage::par_paths`, which use all threads.
 //! - `simd`: [`ray_entries_into`] takes the widest vector instructions of the processor, found at run time by pulp. The
 //!   answers are the same.

@@ -166,6 +166,15 @@ impl<H, V> Outcome<H, V> {
         }
     }
 
+    /// The same with another way to say a hit.
+    pub(crate) fn map<G>(self, of: impl FnOnce(H) -> G) -> Outcome<G, V> {
+        match self {
+            Self::Hit(hit) => Outcome::Hit(of(hit)),
+            Self::Miss(miss) => Outcome::Miss(miss),
+            Self::Undecided => Outcome::Undecided,
+        }
+    }
+
     /// Whether it is a hit.
     #[must_use]
     pub const fn is_hit(&self) -> bool {

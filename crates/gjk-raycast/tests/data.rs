@@ -77,10 +77,10 @@ where
     }
 
     let scene = Scene::new([b]).expect("finite");
-    round_trip(scene.nearest(&a, DistanceOptions::default()));
+    round_trip(scene.all().nearest(&a, DistanceOptions::default()));
     for direction in [ray.direction, -ray.direction] {
-        round_trip(scene.ray_cast(Ray { direction, ..ray }, RayCastOptions::default()).expect("finite"));
-        round_trip(scene.any_hit(Ray { direction, ..ray }, RayCastOptions::default()).expect("finite"));
+        round_trip(scene.all().ray_cast(Ray { direction, ..ray }, RayCastOptions::default()).expect("finite"));
+        round_trip(scene.all().any_hit(Ray { direction, ..ray }, RayCastOptions::default()).expect("finite"));
     }
 }
 
@@ -141,8 +141,8 @@ fn numbers_that_may_be_infinite_are_null_then() {
     }
     assert!(to_string(&DistanceOptions::<DVec3>::default().with_limit(f64::NAN)).is_err(), "no limit, and no infinity");
     let empty: Scene<Ball<DVec2>> = Scene::new([]).expect("nothing is wrong with nothing");
-    round_trip(empty.nearest(&target, DistanceOptions::default()));
-    round_trip(empty.ray_cast(beside, RayCastOptions::default()).expect("finite"));
+    round_trip(empty.all().nearest(&target, DistanceOptions::default()));
+    round_trip(empty.all().ray_cast(beside, RayCastOptions::default()).expect("finite"));
 }
 
 #[test]

@@ -117,7 +117,7 @@ impl Case {
         let bracket = [exit.lower, exit.upper];
         told.push(of_cast("ray exit", &exit.outcome, |h| (h.lambda, h.point, h.normal), bracket, exit.status));
         let scene = Scene::new([a, b]).unwrap();
-        let first = scene.ray_cast(*ray, options!(RayCastOptions::new())).unwrap();
+        let first = scene.all().ray_cast(*ray, options!(RayCastOptions::new())).unwrap();
         let status = if first.is_certain() { Status::Converged } else { Status::Stalled };
         let upper = first.first.as_ref().map_or(f64::INFINITY, |first| first.upper);
         let bracket = [first.lower, if first.undecided.is_none() { upper } else { f64::INFINITY }];

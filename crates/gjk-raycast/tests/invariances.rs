@@ -341,23 +341,23 @@ fn asked<V: Space>(scene: &Scene, exponent: i32) -> Vec<(&'static str, f64)> {
     let mut bodies = gjk_raycast::Scene::new(others.chain([b])).expect("finite");
     bodies.insert_half_space(half_space);
     numbers.query = "scene ray";
-    let first = bodies.ray_cast(ray, Default::default()).expect("finite");
+    let first = bodies.all().ray_cast(ray, Default::default()).expect("finite");
     numbers.first(&first, |hit| (hit.lambda, hit.point));
     numbers.query = "scene linear_cast";
-    let first = bodies.linear_cast(&a, motion, Default::default()).expect("finite");
+    let first = bodies.all().linear_cast(&a, motion, Default::default()).expect("finite");
     numbers.first(&first, |hit| (hit.time, hit.point));
     numbers.query = "scene motion_cast";
-    let first = bodies.motion_cast(&a, turning, options).expect("finite");
+    let first = bodies.all().motion_cast(&a, turning, options).expect("finite");
     numbers.first(&first, |hit| (hit.time, hit.point));
     numbers.query = "scene nearest";
-    let nearest = bodies.nearest(&a, Default::default()).nearest.expect("a half-space at least");
+    let nearest = bodies.all().nearest(&a, Default::default()).nearest.expect("a half-space at least");
     numbers.count(nearest.body);
     numbers.distance(&nearest.distance);
     numbers.query = "scene pairs";
     let (mut pairs, mut contacts) = (Vec::new(), Vec::new());
-    bodies.pairs_within(number(0.5), Default::default(), &mut pairs);
+    bodies.all().pairs_within(number(0.5), Default::default(), &mut pairs);
     pairs.iter().for_each(|pair| numbers.distance(&pair.distance));
-    bodies.contacts_within(number(0.5), Default::default(), &mut contacts);
+    bodies.all().contacts_within(number(0.5), Default::default(), &mut contacts);
     contacts.iter().for_each(|pair| numbers.contact(Some(pair.contact)));
     numbers.found
 }

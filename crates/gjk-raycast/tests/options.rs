@@ -53,10 +53,10 @@ fn casts_refuse_options_of_nan() {
             assert_eq!(ray_cast(&ball, ray, options), refused(parameter), "a source inside");
             assert_eq!(floor().ray_cast(ray, options), refused(parameter));
             for bodies in [vec![], vec![block(5.0)]] {
-                assert_eq!(scene(bodies).ray_cast(ray, options), refused(parameter));
+                assert_eq!(scene(bodies).all().ray_cast(ray, options), refused(parameter));
             }
-            assert_eq!(scene([block(5.0)]).ray_cast_all(ray, options, &mut Vec::new()), refused(parameter));
-            assert_eq!(scene([block(5.0)]).any_hit(ray, options), refused(parameter));
+            assert_eq!(scene([block(5.0)]).all().ray_cast_all(ray, options, &mut Vec::new()), refused(parameter));
+            assert_eq!(scene([block(5.0)]).all().any_hit(ray, options), refused(parameter));
         }
     }
     let with = LinearCastOptions::new;
@@ -72,7 +72,7 @@ fn casts_refuse_options_of_nan() {
             assert_eq!(linear_cast(&rounded(0.0), &rounded(5.0), motion, options), refused(parameter));
             assert_eq!(floor().linear_cast(&rounded(0.0), motion, options), refused(parameter));
             for bodies in [vec![], vec![block(5.0)]] {
-                assert_eq!(scene(bodies).linear_cast(&rounded(0.0), motion, options), refused(parameter));
+                assert_eq!(scene(bodies).all().linear_cast(&rounded(0.0), motion, options), refused(parameter));
             }
         }
     }
@@ -88,7 +88,7 @@ fn casts_refuse_options_of_nan() {
             let rest = RigidMotion::default();
             assert_eq!(motion_cast(&rounded(0.0), motion, &block(5.0), rest, options), refused(parameter));
             assert_eq!(floor().motion_cast(&rounded(0.0), motion, options), refused(parameter));
-            assert_eq!(scene([]).motion_cast(&rounded(0.0), motion, options), refused(parameter));
+            assert_eq!(scene([]).all().motion_cast(&rounded(0.0), motion, options), refused(parameter));
         }
     }
 }
@@ -104,7 +104,7 @@ fn a_cast_without_time_is_a_miss() {
         for target in [block(0.0), block(5.0)] {
             assert!(ray_cast(&target, ALONG, options).is_ok_and(|cast| cast.outcome.is_miss()), "{options:?}");
             assert!(ray_exit(&target, ALONG, options).is_ok_and(|cast| cast.outcome.is_miss()), "{options:?}");
-            let first = scene([target]).ray_cast(ALONG, options).expect("numbers");
+            let first = scene([target]).all().ray_cast(ALONG, options).expect("numbers");
             assert!(first.first.is_none() && first.undecided.is_none(), "{options:?}");
         }
         let inside = iterative_ray_cast(|x| Some(x.clamp_length_max(100.0)), ALONG, options).expect("numbers");

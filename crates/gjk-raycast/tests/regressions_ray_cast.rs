@@ -489,10 +489,10 @@ fn a_hit_that_may_be_a_miss_has_not_converged() {
         assert!(cast.is_certain() || cast.status == Status::Stalled, "{cast:?}");
 
         let scene = Scene::new([pebble]).expect("finite");
-        let first = scene.ray_cast(graze, RayCastOptions::default()).expect("finite");
+        let first = scene.all().ray_cast(graze, RayCastOptions::default()).expect("finite");
         let hit = first.first.as_ref().expect("as alone");
         assert!(stalled(hit.is_certain(), hit.status) && !first.is_certain(), "{first:?}");
-        let any = scene.any_hit(graze, RayCastOptions::default()).expect("finite");
+        let any = scene.all().any_hit(graze, RayCastOptions::default()).expect("finite");
         assert_eq!((any.hit, any.undecided, any.is_certain()), (true, Some(0), false), "{any:?}");
     }
     both(run::<Vec3A>, run::<DVec3>);

@@ -4,7 +4,7 @@ use convex_support::{AngularVelocity as _, Scalar as _, SupportMap};
 use gjk_raycast::{Impact, MotionGradient, RigidMotion, SignedDistanceOptions, Smoothness, signed_distance};
 
 use crate::wire::answer::{Answer, Field, Number};
-use crate::wire::shape::Space;
+use crate::wire::shape::{Solid, Space};
 
 /// The derivatives of a scalar by the poses of both shapes.
 #[derive(Debug)]
@@ -20,15 +20,11 @@ impl<V: Space> Gradient<V> {
     }
 
     /// Of the time of a hit of bodies that move so.
-    pub(super) fn of_impact<A, B>(
+    pub(super) fn of_impact(
         hit: Impact<V>,
-        (a, motion_a): (&A, &RigidMotion<V>),
-        (b, motion_b): (&B, &RigidMotion<V>),
-    ) -> Self
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+        (a, motion_a): (&Solid<V>, &RigidMotion<V>),
+        (b, motion_b): (&Solid<V>, &RigidMotion<V>),
+    ) -> Self {
         let features = hit.closest_features(a, motion_a, b, motion_b);
         let smooth = features.and_then(|features| {
             let gradient = hit.refined(&features).gradient(motion_a, motion_b)?;

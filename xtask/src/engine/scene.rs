@@ -185,36 +185,36 @@ impl<V: Space> One<V> {
             Self::Ray(ray, options) => {
                 let rays = [*ray, Ray { source: ray.source, direction: -ray.direction }];
                 #[cfg(feature = "parallel")]
-                let first = scene.par_ray_casts(&rays, *options);
+                let first = scene.all().par_ray_casts(&rays, *options);
                 #[cfg(not(feature = "parallel"))]
-                let first = rays.map(|ray| scene.ray_cast(ray, *options)).to_vec();
-                format!("{first:?} {:?}", scene.any_hit(*ray, *options))
+                let first = rays.map(|ray| scene.all().ray_cast(ray, *options)).to_vec();
+                format!("{first:?} {:?}", scene.all().any_hit(*ray, *options))
             }
             Self::EveryHit(ray, options) => {
                 let mut hits = Vec::new();
-                format!("{:?} {hits:?}", scene.ray_cast_all(*ray, *options, &mut hits))
+                format!("{:?} {hits:?}", scene.all().ray_cast_all(*ray, *options, &mut hits))
             }
             Self::LinearCast(shape, motion, options) => {
                 let mut hits = Vec::new();
-                let all = scene.linear_cast_all(shape, *motion, *options, &mut hits);
-                format!("{:?} {all:?} {hits:?}", scene.linear_cast(shape, *motion, *options))
+                let all = scene.all().linear_cast_all(shape, *motion, *options, &mut hits);
+                format!("{:?} {all:?} {hits:?}", scene.all().linear_cast(shape, *motion, *options))
             }
             Self::MotionCast(shape, motion, options) => {
                 let other = RigidMotion { velocity: motion.center, ..*motion };
-                let both = scene.motion_cast_of_both(shape, *motion, other, *options);
-                format!("{:?} {both:?}", scene.motion_cast(shape, *motion, *options))
+                let both = scene.all().motion_cast_of_both(shape, *motion, other, *options);
+                format!("{:?} {both:?}", scene.all().motion_cast(shape, *motion, *options))
             }
             Self::Nearest(shape, options) => {
                 let (mut near, mut touched) = (Vec::new(), Vec::new());
                 let (mut first, depth) = (Vec::new(), SignedDistanceOptions::new());
-                let nearest = scene.nearest(shape, *options);
+                let nearest = scene.all().nearest(shape, *options);
                 let within = nearest.lower * scalar::<V>(2.0);
                 let work = [
-                    scene.all_within(shape, within, *options, &mut near),
-                    scene.contacts_of(shape, within, depth, &mut touched),
-                    scene.nearest_k(shape, 3, *options, &mut first),
+                    scene.all().all_within(shape, within, *options, &mut near),
+                    scene.all().contacts_of(shape, within, depth, &mut touched),
+                    scene.all().nearest_k(shape, 3, *options, &mut first),
                 ];
-                let least = scene.least_signed_distance(shape, depth);
+                let least = scene.all().least_signed_distance(shape, depth);
                 format!("{nearest:?} {work:?} {near:?} {touched:?} {first:?} {least:?}")
             }
             Self::PairsWithin(within, options) => {
@@ -222,7 +222,7 @@ impl<V: Space> One<V> {
                 #[cfg(feature = "parallel")]
                 let _ = scene.all().par_pairs_within(*within, *options, &mut pairs);
                 #[cfg(not(feature = "parallel"))]
-                let _ = scene.pairs_within(*within, *options, &mut pairs);
+                let _ = scene.all().pairs_within(*within, *options, &mut pairs);
                 format!("{pairs:?}")
             }
             Self::ContactsWithin(within, options) => {
@@ -230,7 +230,7 @@ impl<V: Space> One<V> {
                 #[cfg(feature = "parallel")]
                 let _ = scene.all().par_contacts_within(*within, *options, &mut contacts);
                 #[cfg(not(feature = "parallel"))]
-                let _ = scene.contacts_within(*within, *options, &mut contacts);
+                let _ = scene.all().contacts_within(*within, *options, &mut contacts);
                 format!("{contacts:?}")
             }
         }
@@ -239,14 +239,14 @@ impl<V: Space> One<V> {
     fn answer(&self, scene: &gjk_raycast::Scene<Solid<V>>) -> Result<Answer, Problem> {
         match self {
             Self::Ray(ray, options) => {
-                first("lambda", &scene.ray_cast(*ray, *options).map_err(problem)?, |hit| hit.lambda)
+                first("lambda", &scene.all().ray_cast(*ray, *options).map_err(problem)?, |hit| hit.lambda)
             }
             Self::EveryHit(ray, options) => every_hit(scene, *ray, *options),
             Self::LinearCast(shape, motion, options) => {
-                first("time", &scene.linear_cast(shape, *motion, *options).map_err(problem)?, |hit| hit.time)
+                first("time", &scene.all().linear_cast(shape, *motion, *options).map_err(problem)?, |hit| hit.time)
             }
             Self::MotionCast(shape, motion, options) => {
-                first("time", &scene.motion_cast(shape, *motion, *options).map_err(problem)?, |hit| hit.time)
+                first("time", &scene.all().motion_cast(shape, *motion, *options).map_err(problem)?, |hit| hit.time)
             }
             Self::Nearest(shape, options) => nearest(scene, shape, *options),
             Self::PairsWithin(within, options) => pairs(scene, *within, *options),
@@ -291,7 +291,7 @@ fn every_hit<V: Space>(
     options: RayCastOptions<V>,
 ) -> Result<Answer, Problem> {
     let mut hits = Vec::new();
-    if let Some(body) = scene.ray_cast_all(ray, options, &mut hits).map_err(problem)?.undecided {
+    if let Some(body) = scene.all().ray_cast_all(ray, options, &mut hits).map_err(problem)?.undecided {
         return Err(undecided(body));
     }
     let one = |found: &BodyHit<RayHit<V>, V::Scalar>| {
@@ -311,7 +311,7 @@ fn nearest<V: Space>(
     shape: &Solid<V>,
     options: DistanceOptions<V>,
 ) -> Result<Answer, Problem> {
-    let Some(found) = scene.nearest(shape, options).nearest else {
+    let Some(found) = scene.all().nearest(shape, options).nearest else {
         return Ok(Answer::default().with("body", Field::Null).with("distance", Field::Null));
     };
     certain(&found.distance)?;
@@ -329,7 +329,7 @@ fn pairs<V: Space>(
     options: DistanceOptions<V>,
 ) -> Result<Answer, Problem> {
     let mut found = Vec::new();
-    scene.pairs_within(within, options, &mut found);
+    scene.all().pairs_within(within, options, &mut found);
     found.iter().try_for_each(|pair| certain(&pair.distance))?;
     Ok(Answer::default().with("pairs", Field::Pairs(found.iter().map(|pair| [pair.a, pair.b]).collect())))
 }
@@ -341,7 +341,7 @@ fn contacts<V: Space>(
     options: SignedDistanceOptions<V>,
 ) -> Result<Answer, Problem> {
     let mut found = Vec::new();
-    scene.contacts_within(within, options, &mut found);
+    scene.all().contacts_within(within, options, &mut found);
     let one = |PairContact { a, b, contact }: &PairContact<V>| {
         let distance = &contact.distance;
         signed_distance::certain(distance, within).map_err(|why| why.at(&format!("bodies[{a}] and bodies[{b}]")))?;

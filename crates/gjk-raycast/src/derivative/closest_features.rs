@@ -1,10 +1,11 @@
 //! The features of two bodies that face each other where they are closest.
 
-use convex_support::{Core, CoreKind, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Core, CoreKind, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::span::{DifferenceSpan, Span};
 use crate::contact::Outline;
+use crate::shape::Shape;
 use crate::symmetric::Symmetric;
 use crate::unit::power_of_two_near;
 
@@ -24,7 +25,7 @@ const LARGEST_REACH: f64 = 0.03;
 /// still has [one-sided derivatives](Self::rate). It is found from an answer and the shapes that were asked about, by
 /// [`SignedDistance::closest_features`](crate::SignedDistance::closest_features) and the same methods of other answers.
 ///
-/// Faces and edges are found by [`SupportMap::core_support_feature`]. A shape that does not implement it, such as a sum
+/// Faces and edges are found by [`SupportMap::core_support_feature`](convex_support::SupportMap::core_support_feature). A shape that does not implement it, such as a sum
 /// or a hull, is taken to be smooth. Of a face with more than 16 corners only every second, third, … is
 /// [known](Self::are_complete).
 #[derive(Clone, Debug)]
@@ -60,11 +61,10 @@ pub struct ClosestFeatures<V: Vector> {
 }
 
 /// Two bodies, and the unit of length.
-pub(super) struct Bodies<'s, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
-    pub(super) a: &'s A,
-    pub(super) b: &'s B,
-    pub(super) cores: [Core<A::Vector>; 2],
-    pub(super) unit: ScalarOf<A>,
+pub(super) struct Bodies<'s, V: Vector> {
+    pub(super) shapes: [Shape<'s, V>; 2],
+    pub(super) cores: [Core<V>; 2],
+    pub(super) unit: V::Scalar,
 }
 
 /// Where two bodies are closest.
@@ -82,15 +82,11 @@ pub(super) struct ClosestPoints<V: Vector> {
 impl<V: Vector> ClosestFeatures<V> {
     /// The features at the normal and the points of an answer. For curved shapes these are known only to about half
     /// their digits, since the distance is stationary in them; Newton's method finds the rest.
-    pub(super) fn new<A, B>(a: &A, b: &B, closest: ClosestPoints<V>) -> Self
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
-        let cores = [a.core(), b.core()];
+    pub(super) fn new(shapes: [Shape<'_, V>; 2], closest: ClosestPoints<V>) -> Self {
+        let cores = shapes.map(|shape| shape.core());
         let size = cores.iter().fold(V::Scalar::ZERO, |sum, core| sum + core.extent + core.radius);
         let gap = closest.signed_distance + cores[0].radius + cores[1].radius;
-        let bodies = Bodies { a, b, cores, unit: power_of_two_near(size + closest.signed_distance.abs()) };
+        let bodies = Bodies { shapes, cores, unit: power_of_two_near(size + closest.signed_distance.abs()) };
         let tilt = tilt(size, gap, closest.error);
         // The normal of polytopes that are apart is that of their closest points, and if they overlap it is that of a
         // face: both are right to rounding. If they touch, or the search ended early, it is only as accurate as the

@@ -1,7 +1,6 @@
 //! The features that answers are about.
 
-use convex_support::{Core, Matrix, Point, Scalar, SupportMap, Vector, compiled_once};
-
+use convex_support::{Core, Point, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use super::ClosestFeatures;
@@ -31,21 +30,19 @@ fn little<S: Scalar>(size: S) -> S {
 impl<V: Vector> Distance<V> {
     /// The features that are closest, of the shapes that were asked about; `None` where they overlap.
     #[must_use]
-    pub fn closest_features<A, B>(&self, a: &A, b: &B) -> Option<ClosestFeatures<V>>
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    pub fn closest_features(
+        &self,
+        a: &dyn SupportMap<Vector = V>,
+        b: &dyn SupportMap<Vector = V>,
+    ) -> Option<ClosestFeatures<V>> {
         let error = self.upper - self.lower;
         let (points, signed_distance) = ([self.point_a, self.point_b], self.distance);
         let closest = ClosestPoints { normal: self.normal?, points, signed_distance, error, is_near: false };
         // NaN is not above it.
         let is_at_floor = !(self.lower > Scalar::ZERO);
-        Some(ClosestFeatures { is_at_floor, ..ClosestFeatures::new(a, b, closest) })
+        Some(ClosestFeatures { is_at_floor, ..features_at(a, b, closest) })
     }
-}
 
-impl<V: Vector> Distance<V> {
     /// The answer with the normal and the points of its [features](Self::closest_features), which are known to
     /// rounding.
     pub fn refined(self, features: &ClosestFeatures<V>) -> Self {
@@ -60,19 +57,19 @@ impl<V: Vector> SignedDistance<V> {
     /// Where the cores of the shapes overlap, another [`signed_distance`] tells whether there is another way out that
     /// is as short: it is that of `a` pushed on by a millionth of the size, against the normal, which makes any other
     /// way the shorter one.
-    pub fn closest_features<A, B>(&self, a: &A, b: &B) -> ClosestFeatures<V>
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    pub fn closest_features(
+        &self,
+        a: &dyn SupportMap<Vector = V>,
+        b: &dyn SupportMap<Vector = V>,
+    ) -> ClosestFeatures<V> {
         let &Self { normal, signed_distance, point_a, point_b, lower, upper, .. } = self;
         let closest =
             ClosestPoints { normal, points: [point_a, point_b], signed_distance, error: upper - lower, is_near: false };
-        let mut features = ClosestFeatures::new(a, b, closest);
-        let (core_a, core_b) = (a.core(), b.core());
+        let mut features = features_at(a, b, closest);
+        let cores = [a.core(), b.core()];
         // By the lower bound, since cores that touch may seem a rounding apart.
-        if lower + core_a.radius + core_b.radius <= Scalar::ZERO {
-            features.is_tied = self.is_tied(a, core_a, b, core_b);
+        if lower + cores[0].radius + cores[1].radius <= Scalar::ZERO {
+            features.is_tied = is_tied(self, cores, a, b);
         }
         features
     }
@@ -83,29 +80,35 @@ impl<V: Vector> SignedDistance<V> {
         let [point_a, point_b] = features.points;
         Self { normal: features.normal, point_a, point_b, ..self }
     }
+}
 
+compiled_once! {
+    /// The features of two bodies at the normal and the points of an answer.
+    fn features_at<V>(a: Shape<'_, V>, b: Shape<'_, V>, closest: ClosestPoints<V>) -> ClosestFeatures<V> {
+        ClosestFeatures::new([a, b], closest)
+    }
+}
+
+compiled_once! {
     /// Whether another normal is as good. If `a` is moved by `−η·n`, the signed distance along any normal `m` falls by
     /// `η·n·m`. So if another normal was as good to within `η·(1 − n·m)`, it is now the best, is found, and can be
     /// measured. Whatever its bracket leaves open may be a tie. If the bodies are curved, the other normal turns a
     /// little as they are pushed, which gains `η²` over twice the stiffness.
-    fn is_tied<A, B>(&self, a: &A, core_a: Core<V>, b: &B, core_b: Core<V>) -> bool
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    fn is_tied<V>(answer: &SignedDistance<V>, cores: [Core<V>; 2], a: Shape<'_, V>, b: Shape<'_, V>) -> bool {
+        let [core_a, core_b] = cores;
         let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
         let push = little(size);
-        let pushed = Core { origin: core_a.origin - self.normal * push, ..core_a };
-        let moved = Moved::new(&a, pushed, None, Scalar::ZERO);
+        let pushed = Core { origin: core_a.origin - answer.normal * push, ..core_a };
+        let moved = Moved::new(a, pushed, None, Scalar::ZERO);
         let least = V::Scalar::EPSILON * V::Scalar::from_f64(8.0);
         let other = signed_distance(&moved, b, SignedDistanceOptions::default().with_tolerance(least));
-        let cosine = other.normal.dot(self.normal);
+        let cosine = other.normal.dot(answer.normal);
         let along_other = other.upper + push * cosine;
         let [times, part] = GAIN.map(V::Scalar::from_f64);
         let gained = (push * (push / size) * times).min(size * part);
         let tolerance = V::Scalar::EPSILON * V::Scalar::from_f64(256.0) * size + gained;
         let is_other = cosine < V::Scalar::from_f64(SAME_NORMAL);
-        is_other && along_other > self.lower - tolerance
+        is_other && along_other > answer.lower - tolerance
     }
 }
 
@@ -114,20 +117,14 @@ impl<V: Vector> Impact<V> {
     /// [`linear_cast`](crate::linear_cast) being its [translations](crate::Motion::translations); `None` where they
     /// overlap at the start.
     #[must_use]
-    pub fn closest_features<A, MA, B, MB>(
+    pub fn closest_features(
         &self,
-        a: &A,
-        motion_a: &MA,
-        b: &B,
-        motion_b: &MB,
-    ) -> Option<ClosestFeatures<V>>
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-        MA: Trajectory<Vector = V> + ?Sized,
-        MB: Trajectory<Vector = V> + ?Sized,
-    {
-        touching(self.normal?, self.point, self.time, (&a, &motion_a), (&b, &motion_b))
+        a: &dyn SupportMap<Vector = V>,
+        motion_a: &dyn Trajectory<Vector = V>,
+        b: &dyn SupportMap<Vector = V>,
+        motion_b: &dyn Trajectory<Vector = V>,
+    ) -> Option<ClosestFeatures<V>> {
+        touching(self.normal?, self.point, self.time, (a, motion_a), (b, motion_b))
     }
 
     /// The hit with the normal and the point of its [features](Self::closest_features), which are known to rounding,
@@ -142,19 +139,13 @@ impl<V: Vector> Impact<V> {
     /// there is no [`gradient`](Self::gradient), or the normal is [not the only
     /// one](ClosestFeatures::is_normal_unique).
     #[must_use]
-    pub fn rate<A, MA, B, MB>(
+    pub fn rate(
         &self,
-        (a, motion_a, change_a): (&A, &MA, RigidMotion<V>),
-        (b, motion_b, change_b): (&B, &MB, RigidMotion<V>),
-    ) -> Option<V::Scalar>
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-        MA: Trajectory<Vector = V> + ?Sized,
-        MB: Trajectory<Vector = V> + ?Sized,
-    {
+        (a, motion_a, change_a): (&dyn SupportMap<Vector = V>, &dyn Trajectory<Vector = V>, RigidMotion<V>),
+        (b, motion_b, change_b): (&dyn SupportMap<Vector = V>, &dyn Trajectory<Vector = V>, RigidMotion<V>),
+    ) -> Option<V::Scalar> {
         let features = self.closest_features(a, motion_a, b, motion_b)?;
-        delay(&features, self.time, (motion_a, change_a), (motion_b, change_b))
+        features.delay(self.time, [motion_a, motion_b], [change_a, change_b])
     }
 }
 
@@ -162,13 +153,10 @@ impl<V: Vector> RayHit<V> {
     /// The feature of the target that the ray hits, and its point for the other; `None` where the source is in the
     /// target.
     #[must_use]
-    pub fn closest_features<S>(&self, target: &S, ray: Ray<V>) -> Option<ClosestFeatures<V>>
-    where
-        S: SupportMap<Vector = V> + ?Sized,
-    {
+    pub fn closest_features(&self, target: &dyn SupportMap<Vector = V>, ray: Ray<V>) -> Option<ClosestFeatures<V>> {
         let tip = Point::new(ray.source).ok()?;
         let motion = RigidMotion::translation(ray.direction);
-        touching(self.normal?, self.point, self.lambda, (&tip, &motion), (&target, &RigidMotion::default()))
+        touching(self.normal?, self.point, self.lambda, (&tip, &motion), (target, &RigidMotion::default()))
     }
 
     /// The hit with the normal of its [feature](Self::closest_features), which is known to rounding, and so its
@@ -188,68 +176,30 @@ compiled_once! {
         a: (Shape<'_, V>, &dyn Trajectory<Vector = V>),
         b: (Shape<'_, V>, &dyn Trajectory<Vector = V>),
     ) -> Option<ClosestFeatures<V>> {
-        features_at(normal, point, time, a, b)
+        let closing = normal.dot(b.1.velocity(time, point) - a.1.velocity(time, point));
+        let (a, b) = (at_time(a, time), at_time(b, time));
+        let zero = V::Scalar::ZERO;
+        // They are as far apart as the target distance of the cast, which the hit does not know, or not at all.
+        let (core_a, core_b) = (a.core(), b.core());
+        let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
+        let gap = normal.dot(a.support(-normal) - b.support(normal));
+        // What is not on purpose is what the time or the normal are wrong by.
+        let [apart, error] = if gap > little(size) { [gap, zero] } else { [zero, gap.abs()] };
+        let points = [point + normal * apart, point];
+        let closest = ClosestPoints { normal, points, signed_distance: apart, error, is_near: true };
+        // At the start they were as far from contact as they have come nearer since.
+        let is_at_floor = !(closing * time > size * rounding());
+        Some(ClosestFeatures { is_at_floor, ..ClosestFeatures::new([&a, &b], closest) })
     }
 }
 
-fn features_at<V: Vector>(
-    normal: V,
-    point: V,
+/// A body where its motion has taken it at a time.
+fn at_time<'s, V: Vector>(
+    (shape, motion): (Shape<'s, V>, &dyn Trajectory<Vector = V>),
     time: V::Scalar,
-    (a, motion_a): (Shape<'_, V>, &dyn Trajectory<Vector = V>),
-    (b, motion_b): (Shape<'_, V>, &dyn Trajectory<Vector = V>),
-) -> Option<ClosestFeatures<V>> {
-    let closing = normal.dot(motion_b.velocity(time, point) - motion_a.velocity(time, point));
-    let (a, b) = (at_time(a, motion_a, time), at_time(b, motion_b, time));
-    let zero = V::Scalar::ZERO;
-    // They are as far apart as the target distance of the cast, which the hit does not know, or not at all.
-    let (core_a, core_b) = (a.core(), b.core());
-    let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
-    let gap = normal.dot(a.support(-normal) - b.support(normal));
-    // What is not on purpose is what the time or the normal are wrong by.
-    let [apart, error] = if gap > little(size) { [gap, zero] } else { [zero, gap.abs()] };
-    let points = [point + normal * apart, point];
-    let closest = ClosestPoints { normal, points, signed_distance: apart, error, is_near: true };
-    // At the start they were as far from contact as they have come nearer since.
-    let is_at_floor = !(closing * time > size * rounding());
-    Some(ClosestFeatures { is_at_floor, ..ClosestFeatures::new(&a, &b, closest) })
-}
-
-/// A body where it is at a time.
-fn at_time<'s, V: Vector>(shape: Shape<'s, V>, motion: &dyn Trajectory<Vector = V>, time: V::Scalar) -> Moved<'s, V> {
+) -> Moved<'s, V> {
     let displacement = motion.displacement(time);
     let core = shape.core();
     let core = Core { origin: displacement.of(core.origin), ..core };
     Moved::new(shape, core, Some(displacement.rotation()), Scalar::ZERO)
-}
-
-/// How much later two bodies touch whose start poses change. The change of a start pose is turned by the motion until
-/// the contact.
-fn delay<V, MA, MB>(
-    features: &ClosestFeatures<V>,
-    time: V::Scalar,
-    (motion_a, change_a): (&MA, RigidMotion<V>),
-    (motion_b, change_b): (&MB, RigidMotion<V>),
-) -> Option<V::Scalar>
-where
-    V: Vector,
-    MA: Trajectory<Vector = V> + ?Sized,
-    MB: Trajectory<Vector = V> + ?Sized,
-{
-    let (carry_a, carry_b) = (carried(motion_a, time, change_a), carried(motion_b, time, change_b));
-    features.delay(|p| carry_a(p) - carry_b(p), |p| motion_a.velocity(time, p) - motion_b.velocity(time, p))
-}
-
-/// The displacement, at a time, of the point that is at `p` then, as the start pose changes.
-fn carried<V, M>(motion: &M, time: V::Scalar, change: RigidMotion<V>) -> impl Fn(V) -> V
-where
-    V: Vector,
-    M: Trajectory<Vector = V> + ?Sized,
-{
-    let displacement = motion.displacement(time);
-    move |p| {
-        let rotation = displacement.rotation();
-        let start = displacement.pivot + rotation.transpose_mul(p - displacement.pivot - displacement.shift);
-        rotation * change.velocity(V::Scalar::ZERO, start)
-    }
 }

@@ -1,11 +1,12 @@
 //! What two bodies show each other along a normal, and how they curve there.
 
-use convex_support::{Core, CoreKind, Feature, Hint, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Core, CoreKind, Feature, Hint, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::closest_features::{Bodies, ClosestFeatures, ClosestPoints};
 use super::span::Span;
 use crate::contact::{ContactPlane, Outline};
+use crate::shape::Shape;
 use crate::symmetric::{Across, Symmetric, axes_across, dot};
 use crate::unit::reciprocal_of_power;
 
@@ -19,14 +20,10 @@ const SURPRISE: f64 = 0.25;
 /// The curves at the ends of an edge are the same if they bend alike to this part of their sum.
 const ALIKE: f64 = 1.0 / 64.0;
 
-impl<A, B> Bodies<'_, A, B>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+impl<V: Vector> Bodies<'_, V> {
     /// Before anything was looked at.
-    pub(super) fn unseen(&self) -> ClosestFeatures<A::Vector> {
-        let zero = A::Vector::ZERO;
+    pub(super) fn unseen(&self) -> ClosestFeatures<V> {
+        let zero = V::ZERO;
         ClosestFeatures {
             normal: zero,
             across: [zero; 2],
@@ -48,35 +45,27 @@ where
 
     /// Sees the features along the normal, which may be wrong by `tilt`. Outlines are long: features are seen where
     /// they stay, not moved there.
-    pub(super) fn look(
-        &self,
-        features: &mut ClosestFeatures<A::Vector>,
-        closest: ClosestPoints<A::Vector>,
-        tilt: ScalarOf<A>,
-    ) {
+    pub(super) fn look(&self, features: &mut ClosestFeatures<V>, closest: ClosestPoints<V>, tilt: V::Scalar) {
         let ClosestPoints { normal, points, signed_distance, .. } = closest;
-        let (unit, half) = (self.unit, ScalarOf::<A>::from_f64(0.5));
+        let (unit, half) = (self.unit, V::Scalar::from_f64(0.5));
         // In the unit; zero is the middle of the closest points, which is on both sides of the plane that outlines are
         // seen in.
-        let plane = ContactPlane { normal, across: axes_across(normal), origin: A::Vector::ZERO };
+        let plane = ContactPlane { normal, across: axes_across(normal), origin: V::ZERO };
         let middle = points[0] * half + points[1] * half;
         (features.normal, features.across, features.points, features.middle) = (normal, plane.across, points, middle);
         (features.signed_distance, features.tilt) = (signed_distance / unit, tilt);
-        let (from, [core_a, core_b]) = (Viewpoint { tilt, middle, unit, plane }, &self.cores);
-        let [outline_a, outline_b] = &mut features.outlines;
-        draw(outline_a, self.a, core_a, -normal, &from);
-        draw(outline_b, self.b, core_b, normal, &from);
-        features.spans = [Span::of(outline_a), Span::of(outline_b)];
-        let of_a = hessian(self.a, core_a, -normal, outline_a, &from);
-        let of_b = hessian(self.b, core_b, normal, outline_b, &from);
-        (features.hessians, features.are_turning) = ([of_a.0, of_b.0], [of_a.1, of_b.1]);
+        let from = Viewpoint { tilt, middle, unit, plane };
+        for (i, direction) in [-normal, normal].into_iter().enumerate() {
+            let (shape, core, outline) = (self.shapes[i], &self.cores[i], &mut features.outlines[i]);
+            draw(outline, shape, core, direction, &from);
+            features.spans[i] = Span::of(outline);
+            (features.hessians[i], features.are_turning[i]) = hessian(shape, core, direction, outline, &from);
+        }
     }
 
     /// Whether the support points nearby are where the Hessians say.
-    pub(super) fn are_foretold(&self, at: &ClosestFeatures<A::Vector>) -> bool {
-        let turn = turn(at.tilt);
-        let of_a = is_foretold(self.a, &self.cores[0], -at.normal, at, 0, turn);
-        of_a && is_foretold(self.b, &self.cores[1], at.normal, at, 1, turn)
+    pub(super) fn are_foretold(&self, at: &ClosestFeatures<V>) -> bool {
+        (0..2).all(|i| is_foretold(self.shapes[i], &self.cores[i], [-at.normal, at.normal][i], at, i))
     }
 }
 
@@ -94,12 +83,12 @@ struct Viewpoint<V: Vector> {
 }
 
 /// Draws the outline of what a body shows along a direction.
-fn draw<B: SupportMap + ?Sized>(
-    outline: &mut Outline<ScalarOf<B>>,
-    body: &B,
-    core: &Core<B::Vector>,
-    direction: B::Vector,
-    from: &Viewpoint<B::Vector>,
+fn draw<V: Vector>(
+    outline: &mut Outline<V::Scalar>,
+    body: Shape<'_, V>,
+    core: &Core<V>,
+    direction: V,
+    from: &Viewpoint<V>,
 ) {
     let per_unit = reciprocal_of_power(from.unit);
     let mut feature = Feature::new();
@@ -115,13 +104,13 @@ fn draw<B: SupportMap + ?Sized>(
 /// The Hessian of the support value of a body across a direction, along which it shows a feature; that of its radius
 /// included. And whether the feature is an edge that turns with the direction, as the side of a cone: the curves at its
 /// ends are not the same.
-fn hessian<B: SupportMap + ?Sized>(
-    body: &B,
-    core: &Core<B::Vector>,
-    direction: B::Vector,
-    outline: &Outline<ScalarOf<B>>,
-    from: &Viewpoint<B::Vector>,
-) -> (Symmetric<ScalarOf<B>>, bool) {
+fn hessian<V: Vector>(
+    body: Shape<'_, V>,
+    core: &Core<V>,
+    direction: V,
+    outline: &Outline<V::Scalar>,
+    from: &Viewpoint<V>,
+) -> (Symmetric<V::Scalar>, bool) {
     let per_unit = reciprocal_of_power(from.unit);
     let along = |direction| {
         let entries = body.core_support_hessian(direction, from.plane.across);
@@ -130,14 +119,14 @@ fn hessian<B: SupportMap + ?Sized>(
     };
     let hessian = match Span::of(outline) {
         Span::Vertex => along(direction),
-        Span::Edge(_) if B::Vector::DIM == 2 => Symmetric::ZERO,
+        Span::Edge(_) if V::DIM == 2 => Symmetric::ZERO,
         Span::Edge(e) if matches!(core.kind, CoreKind::Curved) => {
             let edge = from.plane.across[0] * e.0 + from.plane.across[1] * e.1;
             let turn = turn(from.tilt);
             // Of the curves on either side, from two directions each.
             let [first, second] = [-turn, turn].map(|turn| {
                 let [near, far] = [turn, turn + turn].map(|turn| along(direction + edge * turn));
-                near.blend(far, -ScalarOf::<B>::ONE)
+                near.blend(far, -V::Scalar::ONE)
             });
             let [p, q] = [first, second].map(|curve| bend(curve, e));
             let is_turning = (p - q).abs() > (p + q) * Scalar::from_f64(ALIKE);
@@ -169,29 +158,28 @@ fn bend<S: Scalar>(hessian: Symmetric<S>, e: Across<S>) -> S {
 
 /// Whether the support points of a body along directions near that of the other are where its Hessian says. They are
 /// not where a shape does not say how it curves, or which face it shows.
-fn is_foretold<B: SupportMap + ?Sized>(
-    body: &B,
-    core: &Core<B::Vector>,
-    direction: B::Vector,
-    at: &ClosestFeatures<B::Vector>,
+fn is_foretold<V: Vector>(
+    body: Shape<'_, V>,
+    core: &Core<V>,
+    direction: V,
+    at: &ClosestFeatures<V>,
     index: usize,
-    turn: ScalarOf<B>,
 ) -> bool {
     if at.spans[index] != Span::Vertex {
         return true;
     }
-    let per_unit = reciprocal_of_power(at.unit);
+    let (per_unit, turn) = (reciprocal_of_power(at.unit), turn(at.tilt));
     let hessian = at.hessians[index].plus(-core.radius * per_unit);
     let (mut hint, origin, from) =
         (Hint::new(), at.in_plane((core.origin - at.middle) * per_unit), at.outlines[index].corners[0].at);
-    let rounding = ScalarOf::<B>::from_f64(64.0) * ScalarOf::<B>::EPSILON;
+    let rounding = V::Scalar::from_f64(64.0) * V::Scalar::EPSILON;
     let rows = [(hessian.a, hessian.b), (hessian.b, hessian.d)];
-    at.across.into_iter().zip(rows).take(B::Vector::DIM - 1).all(|(change, row)| {
+    at.across.into_iter().zip(rows).take(V::DIM - 1).all(|(change, row)| {
         [turn, -turn].into_iter().all(|turn| {
             let point = at.in_plane(body.core_support(direction + change * turn, &mut hint) * per_unit);
             let foretold = (row.0 * turn, row.1 * turn);
             let off = (point.0 + origin.0 - from.0 - foretold.0, point.1 + origin.1 - from.1 - foretold.1);
-            let slack = dot(foretold, foretold).sqrt() * ScalarOf::<B>::from_f64(SURPRISE) + rounding;
+            let slack = dot(foretold, foretold).sqrt() * V::Scalar::from_f64(SURPRISE) + rounding;
             dot(off, off) <= slack * slack
         })
     })

@@ -10,25 +10,19 @@
 //! Nothing but the answer is needed for that. Whether the normal and the points are the only ones, and how they move,
 //! is asked of the shapes: [`ClosestFeatures`].
 
-mod at_contact;
 mod closest_features;
 mod features_of;
+mod gradient;
 mod hessian;
-mod impact;
 mod look;
 mod overlap;
-mod pair_gradient;
-mod rate;
-mod ray_cast;
 mod refinement;
 mod smoothness;
 mod span;
 mod velocities;
 
 pub use closest_features::ClosestFeatures;
+pub use gradient::{ImpactGradient, PairGradient, RayCastGradient, RigidMotionGradient};
 pub use hessian::PairHessian;
-pub use impact::{ImpactGradient, RigidMotionGradient};
-pub use pair_gradient::PairGradient;
-pub use ray_cast::RayCastGradient;
 pub use smoothness::Smoothness;
 pub use velocities::ClosestVelocities;

@@ -165,7 +165,7 @@ fn difference<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
 }
 
 /// The unit vector from a point to another.
-fn direction<S: Scalar>(from: Across<S>, to: Across<S>) -> Across<S> {
+pub(super) fn direction<S: Scalar>(from: Across<S>, to: Across<S>) -> Across<S> {
     let e = difference(to, from);
     let per = dot(e, e).sqrt().recip();
     (e.0 * per, e.1 * per)

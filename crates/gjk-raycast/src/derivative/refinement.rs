@@ -1,7 +1,7 @@
 //! Refinement: the normal and the points right to rounding, by Newton's method along the features near those of an
 //! answer.
 
-use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::closest_features::{Bodies, ClosestFeatures, ClosestPoints, rounding};
@@ -17,11 +17,7 @@ const MAX_STEPS: usize = 5;
 const ROUNDS: usize = 4;
 const NEARER: f64 = 1.0 / 16.0;
 
-impl<A, B> Bodies<'_, A, B>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+impl<V: Vector> Bodies<'_, V> {
     /// Looks for a normal, within the angle `reach` of that of an answer, along which the features overlap, as the
     /// closest points require. Returns whether there is one; features within the angle `tilt` count as held by
     /// rounding.
@@ -30,10 +26,10 @@ where
     /// answer is at an edge of a face within reach, features within a smaller angle are tried.
     pub(super) fn settle(
         &self,
-        features: &mut ClosestFeatures<A::Vector>,
-        closest: ClosestPoints<A::Vector>,
-        tilt: ScalarOf<A>,
-        reach: ScalarOf<A>,
+        features: &mut ClosestFeatures<V>,
+        closest: ClosestPoints<V>,
+        tilt: V::Scalar,
+        reach: V::Scalar,
     ) -> bool {
         let mut within = reach;
         for _ in 0..ROUNDS {
@@ -57,15 +53,10 @@ where
 
     /// Turns the normal to be exactly across the features seen. Returns whether there is such a normal along which the
     /// features overlap.
-    fn hold(
-        &self,
-        seen: &mut ClosestFeatures<A::Vector>,
-        closest: ClosestPoints<A::Vector>,
-        reach: ScalarOf<A>,
-    ) -> bool {
+    fn hold(&self, seen: &mut ClosestFeatures<V>, closest: ClosestPoints<V>, reach: V::Scalar) -> bool {
         let radii = self.cores.map(|core| core.radius);
         // Whether the features along another normal are of these kinds, where that is asked, and overlap.
-        let is_kept = |seen: &mut ClosestFeatures<A::Vector>, normal: A::Vector, tilt, kinds: [Option<usize>; 2]| {
+        let is_kept = |seen: &mut ClosestFeatures<V>, normal: V, tilt, kinds: [Option<usize>; 2]| {
             let Some(normal) = normal.unit() else { return false };
             if !((normal - closest.normal).length() <= reach + reach) {
                 return false;
@@ -88,7 +79,7 @@ where
             };
             // A step of Newton's method leaves the square of what it takes away.
             let left = step.turn.length() * step.turn.length();
-            if !is_kept(seen, seen.normal + step.turn, rounding::<ScalarOf<A>>() + left, kinds.map(Some)) {
+            if !is_kept(seen, seen.normal + step.turn, rounding::<V::Scalar>() + left, kinds.map(Some)) {
                 return false;
             }
             if left <= rounding() {
@@ -100,8 +91,8 @@ where
 
     /// Takes steps of Newton's method for the normal and the points, as long as they become shorter. Returns whether
     /// they lead to points that are opposite to each other, along the same features.
-    pub(super) fn refine(&self, best: &mut ClosestFeatures<A::Vector>, closest: ClosestPoints<A::Vector>) -> bool {
-        let mut length = ScalarOf::<A>::from_f64(LONGEST_STEP);
+    pub(super) fn refine(&self, best: &mut ClosestFeatures<V>, closest: ClosestPoints<V>) -> bool {
+        let mut length = V::Scalar::from_f64(LONGEST_STEP);
         let radii = self.cores.map(|core| core.radius);
         for _ in 0..MAX_STEPS {
             let Some(step) = best.newton_step(radii) else { break };

@@ -2,8 +2,9 @@
 
 use convex_support::Scalar;
 
+use super::overlap::direction;
 use crate::contact::Outline;
-use crate::symmetric::{Across, cross, dot};
+use crate::symmetric::{Across, cross};
 
 /// The directions in the plane across a normal in which a body's supporting feature extends: those of a vertex, of an
 /// edge (a unit vector), or of a face. In 2D an edge is all there can be.
@@ -18,11 +19,7 @@ impl<S: Scalar> Span<S> {
     pub(super) fn of(outline: &Outline<S>) -> Self {
         match outline.corners.as_slice() {
             [] | [_] => Self::Vertex,
-            [from, to] => {
-                let e = (to.at.0 - from.at.0, to.at.1 - from.at.1);
-                let per = dot(e, e).sqrt().recip();
-                Self::Edge((e.0 * per, e.1 * per))
-            }
+            [from, to] => Self::Edge(direction(from.at, to.at)),
             _ => Self::Face,
         }
     }
@@ -60,19 +57,12 @@ impl<S: Scalar> Span<S> {
 pub(super) enum DifferenceSpan<S> {
     /// Two vertices.
     None,
-    /// An edge of `a`, or of `b`, and a vertex.
-    Edge(WhichBody, Across<S>),
+    /// An edge of `a`, 0, or of `b`, 1, and a vertex.
+    Edge(usize, Across<S>),
     /// A face of `a`, or of `b`, and a vertex.
-    Face(WhichBody),
+    Face(usize),
     /// Two edges that cross.
     Crossed([Across<S>; 2]),
-}
-
-/// One of the bodies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum WhichBody {
-    A,
-    B,
 }
 
 impl<S: Scalar> DifferenceSpan<S> {
@@ -81,10 +71,10 @@ impl<S: Scalar> DifferenceSpan<S> {
     pub(super) fn of(spans: [Span<S>; 2], parallel: S) -> Option<Self> {
         match spans {
             [Span::Vertex, Span::Vertex] => Some(Self::None),
-            [Span::Edge(e), Span::Vertex] => Some(Self::Edge(WhichBody::A, e)),
-            [Span::Vertex, Span::Edge(e)] => Some(Self::Edge(WhichBody::B, e)),
-            [Span::Face, Span::Vertex] => Some(Self::Face(WhichBody::A)),
-            [Span::Vertex, Span::Face] => Some(Self::Face(WhichBody::B)),
+            [Span::Edge(e), Span::Vertex] => Some(Self::Edge(0, e)),
+            [Span::Vertex, Span::Edge(e)] => Some(Self::Edge(1, e)),
+            [Span::Face, Span::Vertex] => Some(Self::Face(0)),
+            [Span::Vertex, Span::Face] => Some(Self::Face(1)),
             [Span::Edge(e), Span::Edge(f)] if cross(e, f).abs() > parallel => Some(Self::Crossed([e, f])),
             _ => None,
         }

@@ -22,7 +22,7 @@ use convex_support::{AngularVelocity as _, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::ClosestFeatures;
-use super::span::{DifferenceSpan, WhichBody};
+use super::span::DifferenceSpan;
 use crate::symmetric::{Across, Symmetric, cross, dot};
 use crate::unit::reciprocal_of_power;
 use crate::{RigidMotion, Trajectory};
@@ -68,12 +68,16 @@ impl<V: Vector> ClosestFeatures<V> {
     #[must_use]
     pub fn velocities(&self, motion_a: RigidMotion<V>, motion_b: RigidMotion<V>) -> Option<ClosestVelocities<V>> {
         let solver = self.solver()?;
-        let moved = solver.moved(Motions::of(self, motion_a, motion_b));
+        let motions = [motion_a, motion_b];
+        let turns = motions.map(|motion| self.in_plane(motion.angular_velocity.cross_matrix() * self.normal));
+        let [v_a, v_b] = [0, 1].map(|i| motions[i].velocity(V::Scalar::ZERO, self.points[i]));
+        let apart = v_a - v_b;
+        let Shifted { normal, shifts: [shift_a, shift_b] } = solver.shifted(self.in_plane(apart), turns);
         Some(ClosestVelocities {
-            signed_distance: moved.signed_distance,
-            normal: moved.normal,
-            point_a: moved.points[0],
-            point_b: moved.points[1],
+            signed_distance: self.normal.dot(apart),
+            normal: self.out_of_plane(normal),
+            point_a: v_a + self.out_of_plane(shift_a),
+            point_b: v_b + self.out_of_plane(shift_b),
         })
     }
 
@@ -135,36 +139,9 @@ pub(super) struct NewtonStep<V: Vector> {
 
 /// Closest features, with what is solved for every motion.
 pub(super) struct Solver<'f, V: Vector> {
-    pub(super) at: &'f ClosestFeatures<V>,
+    at: &'f ClosestFeatures<V>,
     stiffness: Symmetric<V::Scalar>,
     joint: DifferenceSpan<V::Scalar>,
-}
-
-/// What of two motions matters: the velocities of the material points that are closest, and how the bodies turn the
-/// normal.
-#[derive(Clone, Copy, Debug)]
-struct Motions<V> {
-    velocities: [V; 2],
-    turns: [V; 2],
-}
-
-impl<V: Vector> Motions<V> {
-    fn of(at: &ClosestFeatures<V>, motion_a: RigidMotion<V>, motion_b: RigidMotion<V>) -> Self {
-        let zero = V::Scalar::ZERO;
-        let turn = |motion: RigidMotion<V>| motion.angular_velocity.cross_matrix() * at.normal;
-        Self {
-            velocities: [motion_a.velocity(zero, at.points[0]), motion_b.velocity(zero, at.points[1])],
-            turns: [turn(motion_a), turn(motion_b)],
-        }
-    }
-}
-
-/// How everything moves.
-#[derive(Clone, Copy, Debug)]
-struct MovedFeatures<V: Vector> {
-    signed_distance: V::Scalar,
-    normal: V,
-    points: [V; 2],
 }
 
 /// How the normal changes, and how the closest points move along their bodies, in coordinates across the normal.
@@ -175,18 +152,6 @@ pub(super) struct Shifted<S> {
 }
 
 impl<V: Vector> Solver<'_, V> {
-    fn moved(&self, motions: Motions<V>) -> MovedFeatures<V> {
-        let at = self.at;
-        let apart = motions.velocities[0] - motions.velocities[1];
-        let turns = motions.turns.map(|turn| at.in_plane(turn));
-        let Shifted { normal, shifts } = self.shifted(at.in_plane(apart), turns);
-        MovedFeatures {
-            signed_distance: at.normal.dot(apart),
-            normal: at.out_of_plane(normal),
-            points: [0, 1].map(|i| motions.velocities[i] + at.out_of_plane(shifts[i])),
-        }
-    }
-
     /// By the velocity of the material point of `a` as seen from that of `b`, and how both bodies turn the normal.
     pub(super) fn shifted(&self, apart: Across<V::Scalar>, turns: [Across<V::Scalar>; 2]) -> Shifted<V::Scalar> {
         let (at, [turn_a, turn_b]) = (self.at, turns);
@@ -211,14 +176,14 @@ impl<V: Vector> Solver<'_, V> {
         match self.joint {
             DifferenceSpan::None => (self.soft(r), [zero; 2]),
             DifferenceSpan::Edge(side, e) => {
-                let held = dot(e, turns[side as usize]);
+                let held = dot(e, turns[side]);
                 let change = self.held_along(e, held, r);
                 let along = dot(e, rest(change));
-                (change, side.slides(scaled(e, along)))
+                (change, slides(side, scaled(e, along)))
             }
             DifferenceSpan::Face(side) => {
-                let change = turns[side as usize];
-                (change, side.slides(rest(change)))
+                let change = turns[side];
+                (change, slides(side, rest(change)))
             }
             DifferenceSpan::Crossed([e, f]) => {
                 // e·n′ and f·n′ are known, and g = λe − μf.
@@ -266,15 +231,10 @@ impl<V: Vector> Solver<'_, V> {
 /// The change of the normal, and the slides of both points.
 type Solved<S> = (Across<S>, [Across<S>; 2]);
 
-impl WhichBody {
-    /// The slides of both points, of which only this side's slides: by `g`, or for `b` by `−g`.
-    fn slides<S: Scalar>(self, g: Across<S>) -> [Across<S>; 2] {
-        let zero = (S::ZERO, S::ZERO);
-        match self {
-            Self::A => [g, zero],
-            Self::B => [zero, negative(g)],
-        }
-    }
+/// The slides of both points, of which only one body's slides: by `g`, or for `b` by `−g`.
+fn slides<S: Scalar>(body: usize, g: Across<S>) -> [Across<S>; 2] {
+    let zero = (S::ZERO, S::ZERO);
+    if body == 0 { [g, zero] } else { [zero, negative(g)] }
 }
 
 fn scaled<S: Scalar>(x: Across<S>, factor: S) -> Across<S> {

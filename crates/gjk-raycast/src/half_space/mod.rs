@@ -4,16 +4,17 @@
 //! that is nearest to it, or deepest in it, is the support point of the shape along `−n`. So its queries are closed
 //! forms of how [high](plane) that point is and how fast it sinks.
 
-mod contact;
-mod distance;
-mod linear_cast;
+mod cast;
 mod plane;
-mod ray_cast;
 
-use convex_support::{InvalidShape, Scalar, Vector};
+use convex_support::{InvalidShape, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-pub(crate) use plane::Plane;
+use self::plane::Lowest;
+use crate::contact::manifold_over_plane;
+use crate::{Contact, Distance, SignedDistance, Status};
+
+pub(crate) use self::plane::Plane;
 
 /// The points x with n·x ≤ offset: everything on one side of a plane.
 ///
@@ -60,5 +61,110 @@ impl<V: Vector> HalfSpace<V> {
     #[must_use]
     pub fn offset(&self) -> V::Scalar {
         self.offset
+    }
+
+    /// How far a shape, `a`, is from the half-space, `b`, or how deep in it.
+    ///
+    /// ```
+    /// use convex_support::{Cuboid, Posed, glam::DVec3};
+    /// use gjk_raycast::HalfSpace;
+    ///
+    /// // A box of half extent 0.5 has sunk 0.1 into the floor.
+    /// let floor = HalfSpace::new(DVec3::Y, 0.0)?;
+    /// let parcel = Posed::translated(Cuboid::new(DVec3::splat(0.5))?, DVec3::new(3.0, 0.4, 0.0))?;
+    /// let answer = floor.signed_distance(&parcel);
+    /// assert!((answer.signed_distance + 0.1).abs() < 1e-15);
+    /// assert!(answer.lower <= answer.signed_distance && answer.signed_distance <= answer.upper);
+    /// assert_eq!(answer.normal, DVec3::Y); // the parcel leaves upwards
+    /// # Ok::<(), convex_support::InvalidShape>(())
+    /// ```
+    ///
+    /// It is the height of the shape's lowest point. Its error is a few roundings of the height itself, and what the
+    /// shape says of its [rounding](SupportMap::rounding), however far along the plane the shape is.
+    pub fn signed_distance<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A) -> SignedDistance<V> {
+        let plane = self.plane();
+        let Lowest { height, point } = plane.lowest(shape, Scalar::ZERO);
+        let is_known = height.value.is_finite() && height.error.is_finite();
+        let infinity = V::Scalar::infinity();
+        SignedDistance {
+            signed_distance: height.value,
+            lower: if is_known { height.least() } else { -infinity },
+            upper: if is_known { height.most() } else { infinity },
+            normal: plane.unit,
+            point_a: point,
+            point_b: point - plane.unit * height.value,
+            overlap: height.value <= Scalar::ZERO,
+            status: if is_known { Status::Converged } else { Status::Stalled },
+            iterations: 1,
+            unexpanded: 0,
+        }
+    }
+
+    /// The distance from a shape, `a`, to the half-space, `b`; 0 if it reaches into the half-space, where
+    /// [`signed_distance`](Self::signed_distance) tells how deep.
+    pub fn distance_from<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A) -> Distance<V> {
+        let zero = V::Scalar::ZERO;
+        let SignedDistance { signed_distance, lower, upper, normal, point_a, point_b, status, iterations, .. } =
+            self.signed_distance(shape);
+        let overlap = !(signed_distance > zero);
+        Distance {
+            distance: signed_distance.max(zero),
+            lower: lower.max(zero),
+            upper: upper.max(zero),
+            overlap,
+            point_a,
+            point_b: if overlap { point_a } else { point_b },
+            normal: (!overlap).then_some(normal),
+            status,
+            iterations,
+        }
+    }
+
+    /// The contact of a shape, `a`, with the half-space, `b`; `None` if the shape is farther than `within` from it.
+    ///
+    /// ```
+    /// use convex_support::{Cuboid, Posed, glam::DVec3};
+    /// use gjk_raycast::HalfSpace;
+    ///
+    /// // A box of half extent 0.5 stands on the floor.
+    /// let floor = HalfSpace::new(DVec3::Y, 0.0)?;
+    /// let parcel = Posed::translated(Cuboid::new(DVec3::splat(0.5))?, DVec3::new(5.0, 0.5, 0.0))?;
+    /// let contact = floor.contact(&parcel, 0.01).expect("they touch");
+    /// assert_eq!(contact.normal, DVec3::Y);
+    /// assert_eq!(contact.points().len(), 4);
+    /// assert!(contact.points().iter().all(|p| p.point_b.y == 0.0 && p.signed_distance == 0.0));
+    /// # Ok::<(), convex_support::InvalidShape>(())
+    /// ```
+    ///
+    /// The points are corners of the shape's feature that faces the half-space. If there are more than four, in 2D two,
+    /// they are those that span the feature best.
+    pub fn contact<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A, within: V::Scalar) -> Option<Contact<V>> {
+        self.contact_of(shape, within, None)
+    }
+
+    /// [`contact`](Self::contact) of a shape that was in contact before: of the points of the `last` contact those are
+    /// kept that still hold, as by [`contact_after`](crate::contact_after).
+    pub fn contact_after<A: SupportMap<Vector = V> + ?Sized>(
+        &self,
+        last: &Contact<V>,
+        shape: &A,
+        within: V::Scalar,
+    ) -> Option<Contact<V>> {
+        self.contact_of(shape, within, Some(last))
+    }
+
+    /// `contact_after`, if there was a contact before.
+    pub(crate) fn contact_of<A: SupportMap<Vector = V> + ?Sized>(
+        &self,
+        shape: &A,
+        within: V::Scalar,
+        last: Option<&Contact<V>>,
+    ) -> Option<Contact<V>> {
+        let answer = self.signed_distance(shape);
+        // NaN is farther than anything.
+        if !(answer.signed_distance <= within) {
+            return None;
+        }
+        Some(manifold_over_plane(shape, &answer, within, last.map_or(&[], Contact::points)))
     }
 }

@@ -164,7 +164,7 @@ impl<S: SupportMap> Linkage<S> {
         }
         let PathWorkspace { sweep, half_spaces } = workspace;
         half_spaces.clear();
-        half_spaces.extend(scene.half_spaces().map(|(index, half_space)| (index, half_space.plane())));
+        half_spaces.extend(scene.all().half_spaces().map(|(index, half_space)| (index, half_space.plane())));
         let (mut work, mut open) = (PathWork::default(), None);
         // Where an observer is to see what proves it, everything is cast.
         let target = if observer.is_some() { Float::infinity() } else { options.target_distance };

@@ -5,10 +5,10 @@ use core::ops::ControlFlow;
 use convex_support::{Bound, Scalar, ScalarOf, SupportMap};
 
 use super::{Body, PairContact, Scene, Work};
-use crate::Contact;
+use crate::{Contact, HalfSpace};
 
-/// The bodies of a scene that a question is about: all of them, or those that a closure picks. [`Scene::all`] and
-/// [`Scene::among`] make it, and it answers the same questions as a [`Scene`].
+/// The bodies of a scene that a question is about: all of them, or those that a closure picks, made by [`Scene::all`]
+/// and [`Scene::among`]. It has the questions that a scene answers.
 ///
 /// ```
 /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -65,8 +65,7 @@ impl<S: SupportMap> core::fmt::Debug for Among<'_, S> {
 }
 
 impl<S: SupportMap> Scene<S> {
-    /// Questions about all bodies. They have the same answers as those of the scene itself, unless
-    /// [`Among::without_pairs`] or [`Among::until`] narrows them down.
+    /// Questions about all bodies, unless [`Among::without_pairs`] or [`Among::until`] narrows them down.
     #[must_use]
     pub fn all(&self) -> Among<'_, S> {
         Among { scene: self, bodies: None, without_pairs: None, until: None, last: &[] }
@@ -118,31 +117,47 @@ impl<'s, S: SupportMap> Among<'s, S> {
         self.scene.get(index)
     }
 
-    /// The half-spaces that are asked about.
-    pub(super) fn half_spaces(&self) -> impl Iterator<Item = (usize, &'s Body<S>)> {
+    /// The half-spaces that are asked about, with their indices.
+    pub(crate) fn half_spaces(&self) -> impl Iterator<Item = (usize, &'s HalfSpace<S::Vector>)> {
         let among = *self;
-        self.scene.half_spaces.iter().filter_map(move |&index| Some((index, among.body(index)?)))
+        among.scene.half_spaces.iter().filter_map(move |&index| match among.body(index)? {
+            Body::HalfSpace(half_space) => Some((index, half_space)),
+            Body::Convex(_) => None,
+        })
+    }
+
+    /// The body with this index, if it is to be asked now, which counts as work; a break where the question ends early.
+    #[inline]
+    pub(super) fn to_ask(&self, index: usize, work: &mut Work) -> ControlFlow<(), Option<&'s Body<S>>> {
+        let Some(body) = self.body(index) else { return ControlFlow::Continue(None) };
+        if self.stops(work) {
+            return ControlFlow::Break(());
+        }
+        work.tested += 1;
+        ControlFlow::Continue(Some(body))
     }
 
     /// Asks the half-spaces, and then the bodies whose bound may be below the limit, those with the least bound mostly
     /// first. `ask` is told the bound and returns the next limit, which a body reaches too if its index is below the
-    /// one beside it: of equals the lowest index counts.
-    pub(super) fn in_order<B: Bound<S::Vector>>(
+    /// one beside it: of equals the lowest index counts. A break or an error ends it.
+    pub(super) fn in_order<B: Bound<S::Vector>, E>(
         &self,
         bound: &B,
         end: ScalarOf<S>,
-        mut ask: impl FnMut(usize, ScalarOf<S>, &Body<S>) -> ControlFlow<(), (ScalarOf<S>, usize)>,
-    ) -> Work {
-        let (mut work, mut limit) = (Work::default(), (end, usize::MAX));
+        mut ask: impl FnMut(usize, ScalarOf<S>, &Body<S>) -> Result<ControlFlow<(), (ScalarOf<S>, usize)>, E>,
+    ) -> Result<Work, E> {
+        let (mut work, mut limit, mut refused) = (Work::default(), (end, usize::MAX), None);
         let mut look = |index: usize, from: ScalarOf<S>| {
             if (from < limit.0 || index < limit.1)
-                && let Some(body) = self.body(index)
+                && let Some(body) = self.to_ask(index, &mut work)?
             {
-                if self.stops(&mut work) {
-                    return ControlFlow::Break(());
+                match ask(index, from, body) {
+                    Ok(next) => limit = next?,
+                    Err(why) => {
+                        refused = Some(why);
+                        return ControlFlow::Break(());
+                    }
                 }
-                work.tested += 1;
-                limit = ask(index, from, body)?;
             }
             ControlFlow::Continue(limit.0)
         };
@@ -151,7 +166,7 @@ impl<'s, S: SupportMap> Among<'s, S> {
             work.nodes = self.scene.tree.search(bound, end, look);
         }
         self.finish(&mut work);
-        work
+        refused.map_or(Ok(work), Err)
     }
 
     #[inline]

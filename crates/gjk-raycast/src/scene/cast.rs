@@ -3,18 +3,22 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use convex_support::{Aabb, Bound, Scalar, SupportMap, SweptBox, Vector, outer_box};
+use convex_support::{Aabb, Bound, Scalar, ScalarOf, SupportMap, SweptBox, Vector, outer_box};
 use num_traits::Float;
 
-use super::result::{SceneAnyHit, SceneCast, SceneHits, SceneLinearCast, SceneRayCast, Work, reuse};
-use super::single::SingleAnswer;
-use super::{Among, Body, BodyHit, Scene};
-use crate::{Impact, LinearCastOptions, Motion, Ray, RayCastError, RayCastOptions, RayHit};
+use super::body::seen_from;
+use super::moving_balls::MovingBalls;
+use super::result::{
+    BodyHit, SceneAnyHit, SceneCast, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, reuse,
+};
+use super::{Among, Body};
+use crate::motion::{check, checked};
+use crate::{
+    ChainMotion, Impact, LinearCast, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCast, RayCastError,
+    RayCastOptions, RayHit, RigidMotion, Status, Trajectory,
+};
 
-/// A hit of a ray and the body that it is of.
-type RayBodyHit<V> = BodyHit<RayHit<V>, <V as Vector>::Scalar>;
-
-impl<S: SupportMap> Scene<S> {
+impl<S: SupportMap> Among<'_, S> {
     /// The first body that the ray hits: the least λ of [`ray_cast`](crate::ray_cast) for each body.
     ///
     /// # Errors
@@ -24,7 +28,8 @@ impl<S: SupportMap> Scene<S> {
         ray: Ray<S::Vector>,
         options: RayCastOptions<S::Vector>,
     ) -> Result<SceneRayCast<S::Vector>, RayCastError> {
-        self.all().ray_cast(ray, options)
+        ray.check(&options)?;
+        self.first(&swept_point(ray), options.max_lambda, |body| Ok(body.ray_cast(ray, options)?.into()))
     }
 
     /// All bodies that the ray hits, in the order of λ and then of their indices, into `hits`, which is emptied first.
@@ -35,9 +40,11 @@ impl<S: SupportMap> Scene<S> {
         &self,
         ray: Ray<S::Vector>,
         options: RayCastOptions<S::Vector>,
-        hits: &mut Vec<RayBodyHit<S::Vector>>,
+        hits: &mut Vec<BodyHit<RayHit<S::Vector>, ScalarOf<S>>>,
     ) -> Result<SceneHits, RayCastError> {
-        self.all().ray_cast_all(ray, options, hits)
+        ray.check(&options)?;
+        let ask = |body: &Body<S>| Ok(body.ray_cast(ray, options)?.into());
+        self.all_hits(&swept_point(ray), options.max_lambda, hits, |hit| hit.lambda, ask)
     }
 
     /// Whether the ray hits any body: a shadow ray.
@@ -49,7 +56,19 @@ impl<S: SupportMap> Scene<S> {
         ray: Ray<S::Vector>,
         options: RayCastOptions<S::Vector>,
     ) -> Result<SceneAnyHit, RayCastError> {
-        self.all().any_hit(ray, options)
+        ray.check(&options)?;
+        let (mut hit, mut is_certain, mut undecided) = (false, false, None);
+        let all = (options.max_lambda, usize::MAX);
+        let work = self.in_order(&swept_point(ray), options.max_lambda, |index, _, body| {
+            let cast = body.ray_cast(ray, options)?;
+            hit |= cast.outcome.is_hit();
+            is_certain = cast.outcome.is_hit() && cast.is_certain();
+            if !cast.is_certain() {
+                undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
+            }
+            Ok(if is_certain { ControlFlow::Break(()) } else { ControlFlow::Continue(all) })
+        })?;
+        Ok(SceneAnyHit { hit, undecided: undecided.filter(|_| !is_certain), work })
     }
 
     /// The first body that the moving shape meets: the least time of [`linear_cast`](crate::linear_cast) of the shape,
@@ -64,7 +83,9 @@ impl<S: SupportMap> Scene<S> {
         motion: Motion<S::Vector>,
         options: LinearCastOptions<S::Vector>,
     ) -> Result<SceneLinearCast<S::Vector>, RayCastError> {
-        self.all().linear_cast(shape, motion, options)
+        motion.check(&options)?;
+        let swept = swept_shape(shape, motion, &options);
+        self.first(&swept, options.max_time, |body| Ok(body.linear_cast(shape, motion, options)?.into()))
     }
 
     /// All bodies that the moving shape meets, in the order of the time and then of their indices, into `hits`, which is
@@ -79,7 +100,7 @@ impl<S: SupportMap> Scene<S> {
     /// let scene = Scene::new([ball_at(7.0, 0.0)?, ball_at(3.0, 4.0)?, ball_at(4.0, 0.0)?])?;
     /// let motion = Motion { velocity_a: DVec2::X, ..Motion::default() };
     /// let mut hits = Vec::new();
-    /// let _ = scene.linear_cast_all(&Ball::new(0.5)?, motion, LinearCastOptions::new(), &mut hits)?;
+    /// let _ = scene.all().linear_cast_all(&Ball::new(0.5)?, motion, LinearCastOptions::new(), &mut hits)?;
     /// let times: Vec<_> = hits.iter().map(|found| (found.body, found.hit.time)).collect();
     /// assert_eq!(times, [(2, 3.0), (0, 6.0)]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -92,128 +113,107 @@ impl<S: SupportMap> Scene<S> {
         shape: &A,
         motion: Motion<S::Vector>,
         options: LinearCastOptions<S::Vector>,
-        hits: &mut Vec<BodyHit<Impact<S::Vector>, Number<S>>>,
-    ) -> Result<SceneHits, RayCastError> {
-        self.all().linear_cast_all(shape, motion, options, hits)
-    }
-
-    /// [`ray_cast`](Self::ray_cast) for each of many rays, on all threads of the current [rayon](https://docs.rs/rayon)
-    /// pool.
-    #[cfg(feature = "rayon")]
-    pub fn par_ray_casts(
-        &self,
-        rays: &[Ray<S::Vector>],
-        options: RayCastOptions<S::Vector>,
-    ) -> Vec<Result<SceneRayCast<S::Vector>, RayCastError>>
-    where
-        S: Sync,
-    {
-        use rayon::prelude::*;
-        rays.par_iter().map(|&ray| self.ray_cast(ray, options)).collect()
-    }
-}
-
-impl<S: SupportMap> Among<'_, S> {
-    /// [`Scene::ray_cast`] among these bodies.
-    ///
-    /// # Errors
-    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
-    pub fn ray_cast(
-        &self,
-        ray: Ray<S::Vector>,
-        options: RayCastOptions<S::Vector>,
-    ) -> Result<SceneRayCast<S::Vector>, RayCastError> {
-        ray.check(&options)?;
-        self.first(&swept_point(ray), options.max_lambda, |body| Ok(body.ray_cast(ray, options)?.into()))
-    }
-
-    /// [`Scene::ray_cast_all`] among these bodies.
-    ///
-    /// # Errors
-    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
-    pub fn ray_cast_all(
-        &self,
-        ray: Ray<S::Vector>,
-        options: RayCastOptions<S::Vector>,
-        hits: &mut Vec<RayBodyHit<S::Vector>>,
-    ) -> Result<SceneHits, RayCastError> {
-        ray.check(&options)?;
-        let ask = |body: &Body<S>| Ok(body.ray_cast(ray, options)?.into());
-        self.all_hits(&swept_point(ray), options.max_lambda, hits, |hit| hit.lambda, ask)
-    }
-
-    /// [`Scene::any_hit`] among these bodies.
-    ///
-    /// # Errors
-    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
-    pub fn any_hit(
-        &self,
-        ray: Ray<S::Vector>,
-        options: RayCastOptions<S::Vector>,
-    ) -> Result<SceneAnyHit, RayCastError> {
-        ray.check(&options)?;
-        let (mut hit, mut is_certain, mut undecided) = (false, false, None);
-        let work = self.each(&swept_point(ray), options.max_lambda, |index, body| {
-            let cast = body.ray_cast(ray, options)?;
-            hit |= cast.outcome.is_hit();
-            is_certain = cast.outcome.is_hit() && cast.is_certain();
-            if !cast.is_certain() {
-                undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
-            }
-            Ok(if is_certain { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-        })?;
-        Ok(SceneAnyHit { hit, undecided: undecided.filter(|_| !is_certain), work })
-    }
-
-    /// [`Scene::linear_cast`] among these bodies.
-    ///
-    /// # Errors
-    /// As of [`linear_cast`](crate::linear_cast()).
-    pub fn linear_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
-        &self,
-        shape: &A,
-        motion: Motion<S::Vector>,
-        options: LinearCastOptions<S::Vector>,
-    ) -> Result<SceneLinearCast<S::Vector>, RayCastError> {
-        motion.check(&options)?;
-        let swept = swept_shape(shape, motion, &options);
-        self.first(&swept, options.max_time, |body| Ok(body.linear_cast(shape, motion, options)?.into()))
-    }
-
-    /// [`Scene::linear_cast_all`] among these bodies.
-    ///
-    /// # Errors
-    /// As of [`linear_cast`](crate::linear_cast()).
-    pub fn linear_cast_all<A: SupportMap<Vector = S::Vector> + ?Sized>(
-        &self,
-        shape: &A,
-        motion: Motion<S::Vector>,
-        options: LinearCastOptions<S::Vector>,
-        hits: &mut Vec<BodyHit<Impact<S::Vector>, Number<S>>>,
+        hits: &mut Vec<BodyHit<Impact<S::Vector>, ScalarOf<S>>>,
     ) -> Result<SceneHits, RayCastError> {
         motion.check(&options)?;
         let ask = |body: &Body<S>| Ok(body.linear_cast(shape, motion, options)?.into());
         self.all_hits(&swept_shape(shape, motion, &options), options.max_time, hits, |hit| hit.time, ask)
     }
 
+    /// The first body that a shape meets as it moves and turns among bodies at rest: the least time of
+    /// [`motion_cast`](crate::motion_cast()) of the shape, `a`, against each body, `b`.
+    ///
+    /// ```
+    /// use convex_support::{Ball, Capsule, Posed, glam::DVec3};
+    /// use gjk_raycast::{MotionCastOptions, RigidMotion, Scene};
+    ///
+    /// // A blade turns about z, once a second, among balls.
+    /// let ball_at = |x, y| Posed::translated(Ball::new(0.5)?, DVec3::new(x, y, 0.0));
+    /// let scene = Scene::new([ball_at(-1.0, 0.0)?, ball_at(0.0, 3.0)?, ball_at(1.0, 1.0)?])?;
+    /// let blade = Capsule::new(1.0, 0.0)?; // along y
+    /// let turning = RigidMotion::rotation(DVec3::Z * std::f64::consts::TAU, DVec3::ZERO);
+    /// let answer = scene.all().motion_cast(&blade, turning, MotionCastOptions::new().with_max_time(1.0))?;
+    /// let first = answer.first.ok_or("two are in the way")?;
+    /// assert_eq!(first.body, 0);
+    /// // After 60°, as the first ball reaches 30° to both sides.
+    /// assert!((first.hit.time - 1.0 / 6.0).abs() < 1e-14);
+    /// assert_eq!(answer.work.culled, 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`motion_cast`](crate::motion_cast()).
+    pub fn motion_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: impl Trajectory<Vector = S::Vector>,
+        options: MotionCastOptions<S::Vector>,
+    ) -> Result<SceneMotionCast<S::Vector>, RayCastError> {
+        check("motion", &motion)?;
+        let options = checked(options)?;
+        self.first(&MovingBalls::new(shape, &motion, &options), options.max_time, |body| {
+            Ok(body.motion_cast(shape, &motion, options, |_| {})?.into())
+        })
+    }
+
+    /// The first body that a shape meets as both move: the bodies all by one rigid motion, such as what rides on a
+    /// vehicle or hangs on a gripper. It is the least time of [`motion_cast`](crate::motion_cast()) of the shape, `a`,
+    /// against each body, `b`; the point and the normal are those in the world at that time.
+    ///
+    /// ```
+    /// use convex_support::{Ball, Capsule, Posed, glam::DVec3};
+    /// use gjk_raycast::{MotionCastOptions, RigidMotion, Scene};
+    ///
+    /// // Two balls on a turntable, and a bar that is let down between them.
+    /// let ball_at = |x| Posed::translated(Ball::new(0.5)?, DVec3::new(x, 0.0, 0.0));
+    /// let balls = Scene::new([ball_at(2.0)?, ball_at(-3.0)?])?;
+    /// let table = RigidMotion::rotation(DVec3::Y, DVec3::ZERO);
+    /// let bar = Posed::translated(Capsule::new(1.0, 0.1)?, DVec3::new(0.0, 2.0, 2.0))?;
+    /// let down = RigidMotion::translation(DVec3::NEG_Y * 0.3);
+    /// let cast = balls.all().motion_cast_of_both(&bar, down, table, MotionCastOptions::new().with_max_time(6.0))?;
+    /// // The first ball comes there after three quarters of a turn, and its rim a little before.
+    /// let first = cast.first.ok_or("they meet")?;
+    /// assert_eq!(first.body, 0);
+    /// assert!(4.2 < first.hit.time && first.hit.time < 4.71);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`motion_cast`](crate::motion_cast()).
+    pub fn motion_cast_of_both<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: RigidMotion<S::Vector>,
+        of_bodies: RigidMotion<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
+    ) -> Result<SceneMotionCast<S::Vector>, RayCastError> {
+        check("motion", &motion)?;
+        check("of_bodies", &of_bodies)?;
+        let options = checked(options)?;
+        let seen = seen_from(of_bodies, motion);
+        self.first(&MovingBalls::new(shape, &ChainMotion::new(&seen), &options), options.max_time, |body| {
+            Ok(body.motion_cast_of_both(shape, motion, of_bodies, options)?.into())
+        })
+    }
+
     /// All hits of bodies that `bound` does not leave out, in the order of their λ or time and then of their indices.
     fn all_hits<H: Copy, B: Bound<S::Vector>>(
         &self,
         bound: &B,
-        end: Number<S>,
-        hits: &mut Vec<BodyHit<H, Number<S>>>,
-        value: impl Fn(&H) -> Number<S>,
-        ask: impl Fn(&Body<S>) -> Result<SingleAnswer<H, Number<S>>, RayCastError>,
+        end: ScalarOf<S>,
+        hits: &mut Vec<BodyHit<H, ScalarOf<S>>>,
+        value: impl Fn(&H) -> ScalarOf<S>,
+        ask: impl Fn(&Body<S>) -> Result<SingleAnswer<H, ScalarOf<S>>, RayCastError>,
     ) -> Result<SceneHits, RayCastError> {
         let hits = reuse(hits);
         let mut undecided = None;
-        let work = self.each(bound, end, |index, body| {
+        let work = self.in_order(bound, end, |index, _, body| {
             let single = ask(body)?;
             if single.is_undecided {
                 undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
             }
             hits.extend(single.of(index));
-            Ok(ControlFlow::Continue(()))
+            Ok(ControlFlow::Continue((end, usize::MAX)))
         })?;
         hits.sort_unstable_by(|p, q| {
             let (a, b) = (value(&p.hit), value(&q.hit));
@@ -223,87 +223,71 @@ impl<S: SupportMap> Among<'_, S> {
     }
 
     /// The first hit of all bodies that `bound` does not leave out; `ask` makes the single cast.
-    pub(super) fn first<H: Copy, B: Bound<S::Vector>>(
+    ///
+    /// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, as it cannot be where
+    /// the hit's bracket is closed. Keys, and all that is kept here, are minima over bodies, in which one that was left
+    /// out by its box takes no part: so the order in which bodies are met does not matter, nor which others were met.
+    fn first<H: Copy, B: Bound<S::Vector>>(
         &self,
         bound: &B,
-        end: Number<S>,
-        mut ask: impl FnMut(&Body<S>) -> Result<SingleAnswer<H, Number<S>>, RayCastError>,
-    ) -> Result<SceneCast<H, Number<S>>, RayCastError> {
-        let mut first = FirstHit { hit: None, open: None, lower: Number::<S>::infinity() };
-        let mut error = None;
-        // A body is hit where its box begins at the earliest.
+        end: ScalarOf<S>,
+        ask: impl Fn(&Body<S>) -> Result<SingleAnswer<H, ScalarOf<S>>, RayCastError>,
+    ) -> Result<SceneCast<H, ScalarOf<S>>, RayCastError> {
+        // The least key, with the hit; and where an undecided body may be hit at the earliest, and which.
+        let (mut first, mut open) = (None::<(_, BodyHit<H, ScalarOf<S>>)>, None);
+        let mut lower = ScalarOf::<S>::infinity();
         let work = self.in_order(bound, end, |index, from, body| {
-            match ask(body) {
-                Ok(single) => first.take(index, from, single),
-                Err(refused) => {
-                    error = Some(refused);
-                    return ControlFlow::Break(());
+            let single = ask(body)?;
+            let start = (Float::max(single.lower, from), index);
+            if single.is_undecided || single.hit.is_some() {
+                lower = Float::min(lower, start.0);
+            }
+            if single.is_undecided && open.is_none_or(|open| start < open) {
+                open = Some(start);
+            }
+            if let Some((value, _)) = single.hit {
+                let key = (Float::max(value, from), index);
+                if first.is_none_or(|(least, _)| key < least) {
+                    first = single.of(index).map(|hit| (key, hit));
                 }
             }
-            ControlFlow::Continue(first.hit.map_or((end, usize::MAX), |(key, hit)| (key, hit.body)))
-        });
-        if let Some(error) = error {
-            return Err(error);
-        }
-        let FirstHit { hit, open, lower } = first;
-        let undecided = open.filter(|&open| hit.is_none_or(|(key, hit)| open < (key, hit.body))).map(|(_, body)| body);
-        let lower = if work.cancelled { Number::<S>::ZERO } else { lower };
-        Ok(SceneCast { first: hit.map(|(_, hit)| hit), lower, undecided, work })
-    }
-
-    /// Shows every body that `bound` does not leave out, those with the least bound mostly first.
-    fn each<B: Bound<S::Vector>>(
-        &self,
-        bound: &B,
-        end: Number<S>,
-        mut ask: impl FnMut(usize, &Body<S>) -> Result<ControlFlow<()>, RayCastError>,
-    ) -> Result<Work, RayCastError> {
-        let mut outcome = Ok(ControlFlow::Continue(()));
-        let work = self.in_order(bound, end, |index, _, body| {
-            outcome = ask(index, body);
-            match outcome {
-                Ok(ControlFlow::Continue(())) => ControlFlow::Continue((end, usize::MAX)),
-                _ => ControlFlow::Break(()),
-            }
-        });
-        outcome.map(|_| work)
+            Ok(ControlFlow::Continue(first.map_or((end, usize::MAX), |(key, _)| key)))
+        })?;
+        let undecided = open.filter(|&open| first.is_none_or(|(key, _)| open < key)).map(|(_, body)| body);
+        let lower = if work.cancelled { Scalar::ZERO } else { lower };
+        Ok(SceneCast { first: first.map(|(_, hit)| hit), lower, undecided, work })
     }
 }
 
-/// The scalar of a scene.
-type Number<S> = convex_support::ScalarOf<S>;
-
-/// The first hit so far.
-///
-/// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, as it cannot be where the
-/// hit's bracket is closed. Keys, and all that is kept here, are minima over bodies, in which one that was left out by
-/// its box takes no part: so the order in which bodies are met does not matter, nor which others were met.
-struct FirstHit<H, S> {
-    /// The least key, with the hit.
-    hit: Option<(S, BodyHit<H, S>)>,
-    /// Where an undecided body may be hit at the earliest, and which.
-    open: Option<(S, usize)>,
-    /// Nothing is hit before.
+/// The answer of one cast: `H` is a hit, `S` its λ or time.
+struct SingleAnswer<H, S> {
+    /// The hit, with its λ or time.
+    hit: Option<(S, H)>,
+    is_undecided: bool,
     lower: S,
+    upper: S,
+    status: Status,
 }
 
-impl<H: Copy, S: Scalar> FirstHit<H, S> {
-    /// Takes the cast of a body whose box begins at `from`.
-    fn take(&mut self, body: usize, from: S, single: SingleAnswer<H, S>) {
-        let start = Float::max(single.lower, from);
-        if single.is_undecided {
-            self.lower = Float::min(self.lower, start);
-            if self.open.is_none_or(|open| (start, body) < open) {
-                self.open = Some((start, body));
-            }
-        }
-        if let Some((value, _)) = single.hit {
-            self.lower = Float::min(self.lower, start);
-            let key = Float::max(value, from);
-            if self.hit.is_none_or(|(least, hit)| (key, body) < (least, hit.body)) {
-                self.hit = single.of(body).map(|hit| (key, hit));
-            }
-        }
+impl<H, S: Scalar> SingleAnswer<H, S> {
+    /// The hit as that of a body.
+    fn of(self, body: usize) -> Option<BodyHit<H, S>> {
+        let Self { hit, lower, upper, status, .. } = self;
+        hit.map(|(_, hit)| BodyHit { body, hit, lower, upper, status })
+    }
+}
+
+impl<V: Vector> From<RayCast<V>> for SingleAnswer<RayHit<V>, V::Scalar> {
+    fn from(RayCast { outcome, lower, upper, status, .. }: RayCast<V>) -> Self {
+        let is_undecided = outcome.is_undecided();
+        Self { hit: outcome.hit().map(|hit| (hit.lambda, hit)), is_undecided, lower, upper, status }
+    }
+}
+
+impl<V: Vector> From<LinearCast<V>> for SingleAnswer<Impact<V>, V::Scalar> {
+    fn from(LinearCast { outcome, lower, upper, status, .. }: LinearCast<V>) -> Self {
+        let is_undecided = outcome.is_undecided();
+        Self { hit: outcome.hit().map(|hit| (hit.time, hit)), is_undecided, lower, upper, status }
     }
 }
 
@@ -313,33 +297,24 @@ fn swept_point<V: Vector>(ray: Ray<V>) -> SweptBox<V> {
     SweptBox::new(V::splat(room), ray.source, ray.direction)
 }
 
-/// A box with room for a distance from it, if that is positive.
-fn grown<V: Vector>(around: Aabb<V>, distance: V::Scalar) -> Aabb<V> {
-    let room = V::splat(if distance > V::Scalar::ZERO { distance } else { V::Scalar::ZERO });
-    Aabb { min: around.min - room, max: around.max + room }
-}
-
-/// The box of a shape that moves, as seen from the bodies.
+/// The box of a shape that moves, as seen from the bodies, with room for the target distance.
 fn swept_shape<A: SupportMap + ?Sized>(
     shape: &A,
     motion: Motion<A::Vector>,
     options: &LinearCastOptions<A::Vector>,
 ) -> SweptBox<A::Vector> {
-    let around = grown(outer_box_of_question(shape), options.target_distance);
-    swept_box(around, motion.velocity_a - motion.velocity_b)
-}
-
-/// A box that moves.
-fn swept_box<V: Vector>(around: Aabb<V>, velocity: V) -> SweptBox<V> {
+    let around = outer_box_of_question(shape);
+    let room = A::Vector::splat(Float::max(options.target_distance, Scalar::ZERO));
+    let around = Aabb { min: around.min - room, max: around.max + room };
     let (center, half) = (around.center(), around.half_extents());
     // The two are rounded.
-    let room = (center.abs() + half) * (V::Scalar::from_f64(4.0) * V::Scalar::EPSILON);
-    SweptBox::new(half + room, center, velocity)
+    let room = (center.abs() + half) * (ScalarOf::<A>::from_f64(4.0) * ScalarOf::<A>::EPSILON);
+    SweptBox::new(half + room, center, motion.velocity_a - motion.velocity_b)
 }
 
 /// The box of a shape that a scene is asked about: one that contains everything where a number of the shape is not
 /// finite, so that no body is left out and every single query says so.
 pub(super) fn outer_box_of_question<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
-    let all = S::Vector::splat(Number::<S>::max_value());
+    let all = S::Vector::splat(ScalarOf::<S>::max_value());
     outer_box(shape).unwrap_or(Aabb { min: -all, max: all })
 }

@@ -10,7 +10,7 @@ use super::{Among, Body, Scene};
 use crate::contact::contact_of;
 use crate::{Contact, SignedDistanceOptions};
 
-impl<S: SupportMap> Scene<S> {
+impl<S: SupportMap> Among<'_, S> {
     /// The [contacts](Body::contact) of the shape, `a`, with all bodies, `b`, that are no farther than `within` from
     /// it, in the order of their indices, into `contacts`, which is emptied first.
     ///
@@ -25,7 +25,7 @@ impl<S: SupportMap> Scene<S> {
     /// let ball = Posed::translated(Ball::new(0.5)?, DVec3::new(0.5, 0.5, 0.0))?;
     ///
     /// let mut contacts = Vec::new();
-    /// scene.contacts_of(&ball, 0.01, SignedDistanceOptions::default(), &mut contacts);
+    /// scene.all().contacts_of(&ball, 0.01, SignedDistanceOptions::default(), &mut contacts);
     /// let normals: Vec<_> = contacts.iter().map(|found| (found.body, found.contact.normal)).collect();
     /// assert_eq!(normals, [(0, DVec3::NEG_X), (1, DVec3::Y)]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -37,7 +37,11 @@ impl<S: SupportMap> Scene<S> {
         options: SignedDistanceOptions<S::Vector>,
         contacts: &mut Vec<BodyContact<S::Vector>>,
     ) -> Work {
-        self.all().contacts_of(shape, within, options, contacts)
+        let work = self.near(shape, of_boxes::<S>(within), reuse(contacts), |index, body| {
+            Some(BodyContact { body: index, contact: body.contact(shape, within, options)? })
+        });
+        contacts.sort_unstable_by_key(|found| found.body);
+        work
     }
 
     /// The [contacts](crate::contact()) of all pairs of bodies that are no farther than `within` from each other, in
@@ -54,7 +58,7 @@ impl<S: SupportMap> Scene<S> {
     /// let floor = scene.insert_half_space(HalfSpace::new(DVec3::Y, 0.0)?);
     ///
     /// let mut contacts = Vec::new();
-    /// let work = scene.contacts_within(0.01, SignedDistanceOptions::default(), &mut contacts);
+    /// let work = scene.all().contacts_within(0.01, SignedDistanceOptions::default(), &mut contacts);
     /// assert_eq!(contacts.iter().map(|found| (found.a, found.b)).collect::<Vec<_>>(), [(0, 1), (0, floor)]);
     /// assert!(contacts.iter().all(|found| found.contact.points().len() == 4));
     /// assert_eq!((work.tested, work.culled), (2, 4));
@@ -66,51 +70,13 @@ impl<S: SupportMap> Scene<S> {
         options: SignedDistanceOptions<S::Vector>,
         contacts: &mut Vec<PairContact<S::Vector>>,
     ) -> Work {
-        self.all().contacts_within(within, options, contacts)
-    }
-
-    /// The contacts of all pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than
-    /// `within` from each other.
-    pub fn contacts_between<T: SupportMap<Vector = S::Vector>>(
-        &self,
-        other: &Scene<T>,
-        within: ScalarOf<S>,
-        options: SignedDistanceOptions<S::Vector>,
-        contacts: &mut Vec<PairContact<S::Vector>>,
-    ) -> Work {
-        self.all().contacts_between(other, within, options, contacts)
-    }
-}
-
-impl<S: SupportMap> Among<'_, S> {
-    /// [`Scene::contacts_of`] among these bodies.
-    pub fn contacts_of<A: SupportMap<Vector = S::Vector> + ?Sized>(
-        &self,
-        shape: &A,
-        within: ScalarOf<S>,
-        options: SignedDistanceOptions<S::Vector>,
-        contacts: &mut Vec<BodyContact<S::Vector>>,
-    ) -> Work {
-        let work = self.near(shape, of_boxes::<S>(within), reuse(contacts), |index, body| {
-            Some(BodyContact { body: index, contact: body.contact(shape, within, options)? })
-        });
-        contacts.sort_unstable_by_key(|found| found.body);
-        work
-    }
-
-    /// [`Scene::contacts_within`] among these bodies.
-    pub fn contacts_within(
-        &self,
-        within: ScalarOf<S>,
-        options: SignedDistanceOptions<S::Vector>,
-        contacts: &mut Vec<PairContact<S::Vector>>,
-    ) -> Work {
         self.find_pairs(of_boxes::<S>(within), contacts, &|pair, a, b| {
             between(pair, a, b, within, options, self.last_of(pair))
         })
     }
 
-    /// [`Scene::contacts_between`] of these bodies and all of another scene.
+    /// The contacts of all pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than
+    /// `within` from each other.
     pub fn contacts_between<T: SupportMap<Vector = S::Vector>>(
         &self,
         other: &Scene<T>,

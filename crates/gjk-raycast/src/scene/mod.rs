@@ -1,29 +1,26 @@
 //! Questions about many bodies, of which few have to be asked.
 
-mod all_within;
 mod among;
+mod body;
 mod cast;
-mod contact;
 mod contacts;
-mod error;
 mod height_bound;
-mod mesh;
-mod motion_cast;
+mod moving_balls;
 mod nearest;
 mod pairs;
-mod pieces;
 mod result;
 mod seams;
-mod single;
 
 use alloc::vec::Vec;
+use core::error::Error;
+use core::fmt::{self, Display, Formatter};
 
-use convex_support::{Aabb, Bvh, SupportMap, Vector as _, outer_box};
+use convex_support::{Aabb, Bvh, SupportMap, Triangle, Vector, Vector3, outer_box};
 
 use crate::HalfSpace;
 
 pub use self::among::Among;
-pub use self::error::SceneError;
+pub use self::body::Body;
 pub use self::result::{
     BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, SceneAnyHit, SceneCast,
     SceneDistance, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, SceneSignedDistance, Work,
@@ -61,13 +58,13 @@ pub use self::result::{
 ///     Box::new(Posed::translated(Cuboid::new(DVec3::ONE)?, at(10.0, 8.0))?) as Body,
 /// ])?;
 /// let ray = Ray { source: DVec3::ZERO, direction: DVec3::X };
-/// let answer = scene.ray_cast(ray, RayCastOptions::default())?;
+/// let answer = scene.all().ray_cast(ray, RayCastOptions::default())?;
 /// let first = answer.first.ok_or("two are in the way")?;
 /// assert_eq!((first.body, first.hit.lambda), (1, 9.0));
 /// // One is beside the ray, and one behind the hit.
 /// assert_eq!((answer.work.tested, answer.work.culled), (1, 2));
 ///
-/// let nearest = scene.nearest(&Ball::new(0.5)?, DistanceOptions::default());
+/// let nearest = scene.all().nearest(&Ball::new(0.5)?, DistanceOptions::default());
 /// assert_eq!(nearest.nearest.map(|n| (n.body, n.distance.distance)), Some((1, 8.5)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -91,32 +88,6 @@ pub struct Scene<S: SupportMap> {
     half_spaces: Vec<usize>,
     /// Indices of bodies that were removed, for new ones.
     free: Vec<usize>,
-}
-
-/// A body of a [`Scene`]: a bounded shape, or a half-space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "S: serde::Serialize, HalfSpace<S::Vector>: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "S: serde::Deserialize<'de>, HalfSpace<S::Vector>: serde::Deserialize<'de>"))
-)]
-pub enum Body<S: SupportMap> {
-    /// A bounded convex body.
-    Convex(S),
-    /// All on one side of a plane.
-    HalfSpace(HalfSpace<S::Vector>),
-}
-
-impl<S: SupportMap> Body<S> {
-    /// The bounded body, if it is one.
-    #[must_use]
-    pub fn convex(&self) -> Option<&S> {
-        match self {
-            Self::Convex(body) => Some(body),
-            Self::HalfSpace(_) => None,
-        }
-    }
 }
 
 impl<S: SupportMap> Scene<S> {
@@ -161,14 +132,6 @@ impl<S: SupportMap> Scene<S> {
     #[must_use]
     pub fn tree(&self) -> &Bvh<S::Vector> {
         &self.tree
-    }
-
-    /// The half-spaces, with their indices.
-    pub(crate) fn half_spaces(&self) -> impl Iterator<Item = (usize, &HalfSpace<S::Vector>)> {
-        self.half_spaces.iter().filter_map(|&index| match self.get(index)? {
-            Body::HalfSpace(half_space) => Some((index, half_space)),
-            Body::Convex(_) => None,
-        })
     }
 
     /// Adds a body and returns its index: the index that became free last, or a new one.
@@ -263,3 +226,87 @@ impl<S: SupportMap> Default for Scene<S> {
         Self { bodies: Vec::new(), tree: Bvh::default(), half_spaces: Vec::new(), free: Vec::new() }
     }
 }
+
+impl<V: Vector> Scene<Triangle<V>> {
+    /// The mesh of these triangles, each given by the indices of three vertices. Body `i` is triangle `i`; rays and
+    /// shapes meet both of its sides.
+    ///
+    /// # Errors
+    /// [`SceneError::NoSuchVertex`] if an index is that of no vertex; [`SceneError::NotFinite`] if a coordinate of a
+    /// triangle is not finite.
+    pub fn mesh(vertices: &[V], triangles: &[[usize; 3]]) -> Result<Self, SceneError> {
+        let mut bodies = Vec::with_capacity(triangles.len());
+        for (triangle, corners) in triangles.iter().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|&&vertex| vertex >= vertices.len()) {
+                return Err(SceneError::NoSuchVertex { triangle, vertex });
+            }
+            let corners = corners.map(|vertex| vertices[vertex]);
+            bodies.push(Triangle::new(corners).map_err(|_| SceneError::NotFinite { body: triangle })?);
+        }
+        Self::new(bodies)
+    }
+}
+
+impl<V: Vector3> Scene<Triangle<V>> {
+    /// Whether a ray or shape that moves along `direction` meets the front of a triangle, the side from which its
+    /// corners are seen anticlockwise; `false` if no triangle has this index. This is for questions about one side of a
+    /// mesh:
+    ///
+    /// ```
+    /// use convex_support::glam::DVec3;
+    /// use gjk_raycast::{Ray, RayCastOptions, Scene};
+    ///
+    /// let mesh = Scene::mesh(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]])?;
+    /// let up = Ray { source: DVec3::new(0.2, 0.2, -1.0), direction: DVec3::Z };
+    /// assert!(mesh.all().any_hit(up, RayCastOptions::default())?.hit);
+    /// let front = |triangle| mesh.is_front(triangle, up.direction);
+    /// assert!(!mesh.among(&front).any_hit(up, RayCastOptions::default())?.hit); // from behind
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn is_front(&self, triangle: usize, direction: V) -> bool {
+        let Some(triangle) = self.get(triangle).and_then(|body| body.convex()) else { return false };
+        let [a, b, c] = triangle.points();
+        (b - a).cross(c - a).dot(direction) < V::Scalar::default()
+    }
+}
+
+/// Why a scene refused a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub enum SceneError {
+    /// The box of the body is not finite: one of its support points is NaN or infinite.
+    NotFinite {
+        /// The index of the body.
+        body: usize,
+    },
+    /// No bounded body has this index.
+    NoSuchBody {
+        /// The index.
+        body: usize,
+    },
+    /// A triangle names a vertex that is not there.
+    NoSuchVertex {
+        /// The index of the triangle.
+        triangle: usize,
+        /// The index of the vertex.
+        vertex: usize,
+    },
+}
+
+impl Display for SceneError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { body } => {
+                write!(f, "body {body} has no finite bounding box: one of its support points is NaN or infinite")
+            }
+            Self::NoSuchBody { body } => write!(f, "no bounded body has the index {body}"),
+            Self::NoSuchVertex { triangle, vertex } => {
+                write!(f, "triangle {triangle} has a corner with the index {vertex}, but there is no such vertex")
+            }
+        }
+    }
+}
+
+impl Error for SceneError {}

@@ -10,33 +10,9 @@ use super::result::{PairContact, PairDistance, Work, reuse};
 use super::{Among, Body, Scene};
 use crate::{DistanceOptions, distance};
 
-impl<S: SupportMap> Scene<S> {
+impl<S: SupportMap> Among<'_, S> {
     /// All pairs of bodies that are no farther than `within` from each other by [`distance`](crate::distance()), in the
     /// order of their indices, into `pairs`, which is emptied first. Half-spaces make no pairs with each other.
-    pub fn pairs_within(
-        &self,
-        within: ScalarOf<S>,
-        options: DistanceOptions<S::Vector>,
-        pairs: &mut Vec<PairDistance<S::Vector>>,
-    ) -> Work {
-        self.all().pairs_within(within, options, pairs)
-    }
-
-    /// All pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than `within` from each
-    /// other.
-    pub fn pairs_between<T: SupportMap<Vector = S::Vector>>(
-        &self,
-        other: &Scene<T>,
-        within: ScalarOf<S>,
-        options: DistanceOptions<S::Vector>,
-        pairs: &mut Vec<PairDistance<S::Vector>>,
-    ) -> Work {
-        self.all().pairs_between(other, within, options, pairs)
-    }
-}
-
-impl<S: SupportMap> Among<'_, S> {
-    /// [`Scene::pairs_within`] among these bodies.
     pub fn pairs_within(
         &self,
         within: ScalarOf<S>,
@@ -46,7 +22,8 @@ impl<S: SupportMap> Among<'_, S> {
         self.find_pairs(within, pairs, &|pair, a, b| between(pair, a, b, options.with_limit(within)))
     }
 
-    /// [`Scene::pairs_between`] of these bodies and all of another scene.
+    /// All pairs of one of these bodies, `a`, and any of another scene, `b`, that are no farther than `within` from each
+    /// other.
     pub fn pairs_between<T: SupportMap<Vector = S::Vector>>(
         &self,
         other: &Scene<T>,
@@ -79,9 +56,9 @@ impl<S: SupportMap> Among<'_, S> {
         pairs: &mut Vec<P>,
         tell: &impl Fn([usize; 2], &Body<S>, &Body<S>) -> Option<P>,
     ) -> Work {
-        let mut asking = Asking::new(*self, self.scene.all(), true, within, tell, reuse(pairs));
+        let mut asking =
+            Asking { a: *self, b: *self, same: true, within, tell, pairs: reuse(pairs), work: Work::default() };
         asking.search(self.scene.tree.pairs_within(within));
-        asking.half_spaces_of_a();
         asking.finish()
     }
 
@@ -93,10 +70,9 @@ impl<S: SupportMap> Among<'_, S> {
         pairs: &mut Vec<P>,
         tell: &impl Fn([usize; 2], &Body<S>, &Body<T>) -> Option<P>,
     ) -> Work {
-        let mut asking = Asking::new(*self, other.all(), false, within, tell, reuse(pairs));
+        let (b, pairs) = (other.all(), reuse(pairs));
+        let mut asking = Asking { a: *self, b, same: false, within, tell, pairs, work: Work::default() };
         asking.search(self.scene.tree.pairs_between(&other.tree, within));
-        asking.half_spaces_of_a();
-        asking.half_spaces_of_b();
         asking.finish()
     }
 
@@ -114,24 +90,24 @@ impl<S: SupportMap> Among<'_, S> {
         use rayon::prelude::*;
         // Enough that threads which are done find another, and not so many that they wait for each other.
         const PIECES: usize = 256;
+        let (a, b, same) = (*self, *self, true);
         let pieces = self.scene.tree.pairs_within(within).split(PIECES);
         let found: Vec<_> = pieces
             .into_par_iter()
             .map(|piece| {
                 let mut pairs = Vec::new();
-                let mut asking = Asking::new(*self, self.scene.all(), true, within, tell, &mut pairs);
+                let mut asking = Asking { a, b, same, within, tell, pairs: &mut pairs, work: Work::default() };
                 asking.search(piece);
                 (asking.work, pairs)
             })
             .collect();
-        let mut asking = Asking::new(*self, self.scene.all(), true, within, tell, reuse(pairs));
+        let mut asking = Asking { a, b, same, within, tell, pairs: reuse(pairs), work: Work::default() };
         for (work, pairs) in found {
             asking.pairs.extend(pairs);
             asking.work.nodes += work.nodes;
             asking.work.tested += work.tested;
             asking.work.cancelled |= work.cancelled;
         }
-        asking.half_spaces_of_a();
         asking.finish()
     }
 }
@@ -167,62 +143,21 @@ struct Asking<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>, F, P> {
     work: Work,
 }
 
-impl<'s, 'p, S, T, F, P: OfPair> Asking<'s, 'p, S, T, F, P>
+impl<S, T, F, P: OfPair> Asking<'_, '_, S, T, F, P>
 where
     S: SupportMap,
     T: SupportMap<Vector = S::Vector>,
     F: Fn([usize; 2], &Body<S>, &Body<T>) -> Option<P>,
 {
-    fn new(
-        a: Among<'s, S>,
-        b: Among<'s, T>,
-        same: bool,
-        within: ScalarOf<S>,
-        tell: &'p F,
-        pairs: &'p mut Vec<P>,
-    ) -> Self {
-        Self { a, b, same, within, tell, pairs, work: Work::default() }
-    }
-
     /// Asks about the pairs of bounded bodies whose boxes are near.
     fn search(&mut self, search: PairSearch<'_, S::Vector>) {
-        let nodes = search.visit(|i, j| {
-            let (i, j) = if self.same && j < i { (j, i) } else { (i, j) };
-            self.ask(i, j)
-        });
+        let nodes = search.visit(|i, j| self.ask(i, j));
         self.work.nodes += nodes;
     }
 
-    /// Asks about the bodies of `b` that are near a half-space of `a`; the other way round too, where both are one
-    /// scene.
-    fn half_spaces_of_a(&mut self) {
-        let (a, b, within) = (self.a, self.b.scene, self.within);
-        for (index, body) in a.half_spaces() {
-            let Body::HalfSpace(half_space) = body else { continue };
-            let nodes = b.tree.within(&HeightBound::new(half_space), within, |other| {
-                let (i, j) = if self.same && other < index { (other, index) } else { (index, other) };
-                self.ask(i, j)
-            });
-            self.work.nodes += nodes;
-        }
-    }
-
-    /// Asks about the bodies of `a` that are near a half-space of `b`.
-    fn half_spaces_of_b(&mut self) {
-        let (a, b, within) = (self.a.scene, self.b, self.within);
-        for (index, body) in b.half_spaces() {
-            let Body::HalfSpace(half_space) = body else { continue };
-            let nodes = a.tree.within(&HeightBound::new(half_space), within, |other| self.ask(other, index));
-            self.work.nodes += nodes;
-        }
-    }
-
     fn ask(&mut self, i: usize, j: usize) -> ControlFlow<()> {
-        // Of one scene, both have to be picked.
-        let picked = !self.same || self.a.body(j).is_some();
-        let (Some(a), Some(b), true) = (self.a.body(i), self.b.body(j), picked) else {
-            return ControlFlow::Continue(());
-        };
+        let (i, j) = if self.same && j < i { (j, i) } else { (i, j) };
+        let (Some(a), Some(b)) = (self.a.body(i), self.b.body(j)) else { return ControlFlow::Continue(()) };
         if self.a.is_pair_left_out(i, j) {
             return ControlFlow::Continue(());
         }
@@ -234,8 +169,17 @@ where
         ControlFlow::Continue(())
     }
 
-    /// Sorts the pairs and says what was left out of all.
+    /// Asks about the bodies that are near half-spaces, sorts the pairs, and says what was left out of all.
     fn finish(mut self) -> Work {
+        let (a, b, same, within) = (self.a, self.b, self.same, self.within);
+        for (index, half_space) in a.half_spaces() {
+            let nodes = b.scene.tree.within(&HeightBound::new(half_space), within, |other| self.ask(index, other));
+            self.work.nodes += nodes;
+        }
+        for (index, half_space) in b.half_spaces().filter(|_| !same) {
+            let nodes = a.scene.tree.within(&HeightBound::new(half_space), within, |other| self.ask(other, index));
+            self.work.nodes += nodes;
+        }
         self.pairs.sort_unstable_by_key(OfPair::indices);
         self.work.culled = self.all() - self.work.tested;
         self.work
@@ -263,7 +207,7 @@ fn between<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
     let distance = match (a, b) {
         (Body::Convex(a), Body::Convex(b)) => distance(a, b, options),
         (Body::Convex(a), Body::HalfSpace(b)) => b.distance_from(a),
-        (Body::HalfSpace(a), Body::Convex(b)) => a.distance_to(b),
+        (Body::HalfSpace(a), Body::Convex(b)) => a.distance_from(b).reversed(),
         (Body::HalfSpace(_), Body::HalfSpace(_)) => return None,
     };
     (distance.distance <= options.limit).then_some(PairDistance { a: i, b: j, distance })

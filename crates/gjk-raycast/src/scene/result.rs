@@ -2,8 +2,7 @@
 
 use alloc::vec::Vec;
 
-use convex_support::Vector;
-use num_traits::Float;
+use convex_support::{Scalar, Vector};
 
 use crate::{Contact, Distance, Impact, RayHit, SignedDistance, Status};
 
@@ -28,12 +27,7 @@ pub struct Work {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "H: serde::Serialize, S: num_traits::Float + serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "H: serde::Deserialize<'de>, S: num_traits::Float + serde::Deserialize<'de>"))
-)]
-pub struct SceneCast<H, S> {
+pub struct SceneCast<H, S: Scalar> {
     /// The first hit; `None` where every body is missed. Of bodies hit at the same λ or time, the one with the lowest
     /// index.
     pub first: Option<BodyHit<H, S>>,
@@ -47,7 +41,7 @@ pub struct SceneCast<H, S> {
     pub work: Work,
 }
 
-impl<H, S: Float> SceneCast<H, S> {
+impl<H, S: Scalar> SceneCast<H, S> {
     /// Whether the outcome is certain: a hit is where its upper bound is finite and no body before it is undecided,
     /// and a miss where no body is.
     #[must_use]
@@ -56,24 +50,19 @@ impl<H, S: Float> SceneCast<H, S> {
     }
 }
 
-/// The answer of [`Scene::ray_cast`](crate::Scene::ray_cast).
+/// The answer of [`Among::ray_cast`](crate::Among::ray_cast).
 pub type SceneRayCast<V> = SceneCast<RayHit<V>, <V as Vector>::Scalar>;
 
-/// The answer of [`Scene::linear_cast`](crate::Scene::linear_cast).
+/// The answer of [`Among::linear_cast`](crate::Among::linear_cast).
 pub type SceneLinearCast<V> = SceneCast<Impact<V>, <V as Vector>::Scalar>;
 
-/// The answer of [`Scene::motion_cast`](crate::Scene::motion_cast).
+/// The answer of [`Among::motion_cast`](crate::Among::motion_cast).
 pub type SceneMotionCast<V> = SceneCast<Impact<V>, <V as Vector>::Scalar>;
 
 /// Which body is hit, and what the single query for it answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "H: serde::Serialize, S: num_traits::Float + serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "H: serde::Deserialize<'de>, S: num_traits::Float + serde::Deserialize<'de>"))
-)]
-pub struct BodyHit<H, S> {
+pub struct BodyHit<H, S: Scalar> {
     /// The index of the body.
     pub body: usize,
     /// The hit.
@@ -87,7 +76,7 @@ pub struct BodyHit<H, S> {
     pub status: Status,
 }
 
-impl<H, S: Float> BodyHit<H, S> {
+impl<H, S: Scalar> BodyHit<H, S> {
     /// Whether the hit is certain: whether its upper bound is finite.
     #[must_use]
     pub fn is_certain(&self) -> bool {
@@ -95,7 +84,7 @@ impl<H, S: Float> BodyHit<H, S> {
     }
 }
 
-/// The answer of [`Scene::ray_cast_all`](crate::Scene::ray_cast_all).
+/// The answer of [`Among::ray_cast_all`](crate::Among::ray_cast_all).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -106,7 +95,7 @@ pub struct SceneHits {
     pub work: Work,
 }
 
-/// The answer of [`Scene::any_hit`](crate::Scene::any_hit).
+/// The answer of [`Among::any_hit`](crate::Among::any_hit).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -127,15 +116,11 @@ impl SceneAnyHit {
     }
 }
 
-/// The answer of [`Scene::nearest`](crate::Scene::nearest).
+/// The answer of [`Among::nearest`](crate::Among::nearest).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct SceneDistance<V: Vector> {
     /// The nearest body; `None` where none is within the limit. Of bodies equally near, the one with the lowest index.
     pub nearest: Option<BodyDistance<V>>,
@@ -149,11 +134,7 @@ pub struct SceneDistance<V: Vector> {
 /// A body, and its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct BodyDistance<V: Vector> {
     /// The index of the body.
     pub body: usize,
@@ -161,15 +142,11 @@ pub struct BodyDistance<V: Vector> {
     pub distance: Distance<V>,
 }
 
-/// The answer of [`Scene::least_signed_distance`](crate::Scene::least_signed_distance).
+/// The answer of [`Among::least_signed_distance`](crate::Among::least_signed_distance).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct SceneSignedDistance<V: Vector> {
     /// The body with the least signed distance; `None` where none is within the limit.
     pub least: Option<BodySignedDistance<V>>,
@@ -183,11 +160,7 @@ pub struct SceneSignedDistance<V: Vector> {
 /// A body, and its signed distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct BodySignedDistance<V: Vector> {
     /// The index of the body.
     pub body: usize,
@@ -198,11 +171,7 @@ pub struct BodySignedDistance<V: Vector> {
 /// Two bodies, and their distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct PairDistance<V: Vector> {
     /// The index of the first: the lower one, or that in the first scene.
     pub a: usize,
@@ -215,11 +184,7 @@ pub struct PairDistance<V: Vector> {
 /// A body, and its contact with a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct BodyContact<V: Vector> {
     /// The index of the body.
     pub body: usize,
@@ -230,11 +195,7 @@ pub struct BodyContact<V: Vector> {
 /// Two bodies, and their contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct PairContact<V: Vector> {
     /// The index of the first: the lower one, or that in the first scene.
     pub a: usize,

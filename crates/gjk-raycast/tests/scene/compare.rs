@@ -95,7 +95,7 @@ fn ray<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
         _ => {}
     }
     let casts = brute_force::rays(world, ray, options);
-    let answer = world.scene.ray_cast(ray, options).expect("a good ray");
+    let answer = world.scene.all().ray_cast(ray, options).expect("a good ray");
     let singles = casts
         .iter()
         .map(|&(body, cast)| Single::new(body, cast.outcome, [cast.lower, cast.upper], cast.status, |hit| hit.lambda));
@@ -108,11 +108,11 @@ fn ray<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
     );
 
     let mut hits = Vec::new();
-    let all = world.scene.ray_cast_all(ray, options, &mut hits).expect("a good ray");
+    let all = world.scene.all().ray_cast_all(ray, options, &mut hits).expect("a good ray");
     let mut due: Vec<_> = casts.iter().filter_map(|(body, cast)| Some((cast.outcome.hit()?.lambda, *body))).collect();
     due.sort_by(|a, b| a.partial_cmp(b).expect("no NaN"));
     let found: Vec<_> = hits.iter().map(|hit| (hit.hit.lambda, hit.body)).collect();
-    let any = world.scene.any_hit(ray, options).expect("a good ray");
+    let any = world.scene.all().any_hit(ray, options).expect("a good ray");
     if options.tolerance > V::Scalar::ZERO {
         // Where a bracket stays open the box may prove that the end comes first.
         assert!(found.iter().all(|hit| due.contains(hit)), "all hits of {ray:?}");
@@ -149,7 +149,7 @@ fn linear_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Co
         _ => {}
     }
     let casts = brute_force::casts(world, &shape, motion, options);
-    let answer = world.scene.linear_cast(&shape, motion, options).expect("a good motion");
+    let answer = world.scene.all().linear_cast(&shape, motion, options).expect("a good motion");
     let singles = casts
         .iter()
         .map(|&(body, cast)| Single::new(body, cast.outcome, [cast.lower, cast.upper], cast.status, |hit| hit.time));
@@ -157,7 +157,7 @@ fn linear_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Co
     first(&answer, singles, is_rough, &format!("kind {}, {motion:?}, {options:?}", world.kind), count);
 
     let mut hits = Vec::new();
-    let all = world.scene.linear_cast_all(&shape, motion, options, &mut hits).expect("a good motion");
+    let all = world.scene.all().linear_cast_all(&shape, motion, options, &mut hits).expect("a good motion");
     let mut due: Vec<_> = casts.iter().filter_map(|(body, cast)| Some((cast.outcome.hit()?, *body))).collect();
     due.sort_by(|(p, a), (q, b)| p.time.partial_cmp(&q.time).expect("no NaN").then(a.cmp(b)));
     let found: Vec<_> = hits.iter().map(|hit| (hit.hit, hit.body)).collect();
@@ -200,9 +200,9 @@ fn motion_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Co
     };
     let casts = brute_force::motions(world, &shape, motion, of_bodies, options);
     let answer = if of_bodies == RigidMotion::default() {
-        world.scene.motion_cast(&shape, motion, options)
+        world.scene.all().motion_cast(&shape, motion, options)
     } else {
-        world.scene.motion_cast_of_both(&shape, motion, of_bodies, options)
+        world.scene.all().motion_cast_of_both(&shape, motion, of_bodies, options)
     };
     let answer = answer.expect("a good motion");
     let singles = casts
@@ -219,7 +219,7 @@ fn motion_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Co
 }
 
 /// The cast of one body.
-struct Single<H, S> {
+struct Single<H, S: Scalar> {
     body: usize,
     /// The hit, with its λ or time.
     hit: Option<(S, BodyHit<H, S>)>,
@@ -278,7 +278,7 @@ fn distances<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Coun
     let shape = body::<V>(numbers, world.kind, 1);
     let all = brute_force::distances(world, &shape);
     let limit = if numbers.below(2) == 0 { V::Scalar::infinity() } else { V::Scalar::from_f64(size * numbers.unit()) };
-    let answer = world.scene.nearest(&shape, DistanceOptions::default().with_limit(limit));
+    let answer = world.scene.all().nearest(&shape, DistanceOptions::default().with_limit(limit));
     let near = all.iter().filter(|body| body.distance.distance <= limit);
     let due = near.copied().reduce(|a, b| if b.distance.distance < a.distance.distance { b } else { a });
     assert_eq!(answer.nearest, due, "kind {}, the nearest within {limit}", world.kind);
@@ -288,7 +288,7 @@ fn distances<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Coun
 
     let within = V::Scalar::from_f64(size * numbers.unit());
     let mut found = Vec::new();
-    let work = world.scene.all_within(&shape, within, DistanceOptions::default(), &mut found);
+    let work = world.scene.all().all_within(&shape, within, DistanceOptions::default(), &mut found);
     let due: Vec<_> = all.iter().copied().filter(|body| body.distance.distance <= within).collect();
     assert_eq!(found, due, "kind {}, within {within}", world.kind);
     assert_eq!(work.tested + work.culled, world.scene.len(), "every body is one or the other");
@@ -302,7 +302,7 @@ fn distances<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Coun
 
     let mut several = Vec::new();
     let wanted = numbers.below(8);
-    let work = world.scene.nearest_k(&shape, wanted, DistanceOptions::default().with_limit(limit), &mut several);
+    let work = world.scene.all().nearest_k(&shape, wanted, DistanceOptions::default().with_limit(limit), &mut several);
     let mut due: Vec<_> = all.iter().copied().filter(|body| body.distance.distance <= limit).collect();
     due.sort_by(|a, b| {
         a.distance.distance.partial_cmp(&b.distance.distance).expect("no NaN").then(a.body.cmp(&b.body))
@@ -312,7 +312,7 @@ fn distances<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Coun
     assert_eq!(work.tested + work.culled, world.scene.len(), "every body is one or the other");
 
     let options = SignedDistanceOptions::default();
-    let answer = world.scene.least_signed_distance(&shape, options.with_limit(limit));
+    let answer = world.scene.all().least_signed_distance(&shape, options.with_limit(limit));
     let signed = world.scene.iter().map(|(body, other)| (other.signed_distance(&shape, options), body));
     let near = signed.filter(|(distance, _)| distance.signed_distance <= limit);
     let due = near.reduce(|a, b| if b.0.signed_distance < a.0.signed_distance { b } else { a });
@@ -327,7 +327,7 @@ fn pairs<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
     let (size, _) = scale(world, numbers);
     let within = V::Scalar::from_f64([0.0, size, size * 0.1][numbers.below(3)]);
     let mut found = Vec::new();
-    let work = world.scene.pairs_within(within, DistanceOptions::default(), &mut found);
+    let work = world.scene.all().pairs_within(within, DistanceOptions::default(), &mut found);
     let due = brute_force::pairs(world, within);
     assert_eq!(brute_force::bounded(&found, &world.scene), due, "kind {}, pairs within {within}", world.kind);
     let is_sorted = found.windows(2).all(|w| (w[0].a, w[0].b) < (w[1].a, w[1].b));
@@ -349,7 +349,7 @@ fn pairs<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
     }
     // Between two scenes; of a scene and itself each pair twice, and every body with itself.
     let mut between = Vec::new();
-    world.scene.pairs_between(&world.scene, within, DistanceOptions::default(), &mut between);
+    world.scene.all().pairs_between(&world.scene, within, DistanceOptions::default(), &mut between);
     between.retain(|pair| pair.a < pair.b);
     let ours: Vec<_> = between.iter().map(|pair| (pair.a, pair.b, pair.distance)).collect();
     assert_eq!(ours, found.iter().map(|pair| (pair.a, pair.b, pair.distance)).collect::<Vec<_>>(), "between two");
@@ -368,7 +368,7 @@ fn contacts<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count
     let within = V::Scalar::from_f64([0.0, size * 0.1, size, -0.2 * size][numbers.below(4)]);
     let options = SignedDistanceOptions::default();
     let mut found = Vec::new();
-    let work = world.scene.contacts_within(within, options, &mut found);
+    let work = world.scene.all().contacts_within(within, options, &mut found);
     let due = brute_force::contacts(world, within);
     assert_eq!(found, due, "kind {}, contacts within {within}", world.kind);
     count.contacts += found.len();
@@ -376,7 +376,7 @@ fn contacts<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count
     count.culled += work.culled;
     // Between two scenes; of a scene and itself each pair twice, and every body with itself.
     let mut between = Vec::new();
-    world.scene.contacts_between(&world.scene, within, options, &mut between);
+    world.scene.all().contacts_between(&world.scene, within, options, &mut between);
     between.retain(|pair| pair.a < pair.b);
     assert_eq!(between, found, "between two");
     // Some bodies do not count.
@@ -393,7 +393,7 @@ fn contacts<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count
     // Of one shape.
     let shape = body::<V>(numbers, world.kind, 1);
     let mut of_shape = Vec::new();
-    let work = world.scene.contacts_of(&shape, within, options, &mut of_shape);
+    let work = world.scene.all().contacts_of(&shape, within, options, &mut of_shape);
     assert_eq!(of_shape, brute_force::contacts_of(world, &shape, within), "kind {}, within {within}", world.kind);
     assert_eq!(work.tested + work.culled, world.scene.len(), "every body is one or the other");
     count.questions += 3;

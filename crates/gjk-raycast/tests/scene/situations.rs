@@ -21,21 +21,25 @@ fn along_x() -> Ray<DVec3> {
 #[test]
 fn an_empty_scene_answers() {
     let mut scene = Scene::<Ball<DVec3>>::default();
-    let cast = scene.ray_cast(along_x(), RayCastOptions::default()).unwrap();
+    let cast = scene.all().ray_cast(along_x(), RayCastOptions::default()).unwrap();
     assert_eq!((cast.first, cast.lower, cast.work.tested), (None, f64::INFINITY, 0), "nothing is in the way");
     let bad = Ray { source: DVec3::ZERO, direction: DVec3::ZERO };
     assert_eq!(
-        scene.ray_cast(bad, RayCastOptions::default()).unwrap_err(),
+        scene.all().ray_cast(bad, RayCastOptions::default()).unwrap_err(),
         RayCastError::ZeroDirection,
         "though empty"
     );
     let point = Point::new(DVec3::ZERO).unwrap();
-    assert_eq!(scene.nearest(&point, DistanceOptions::default()).nearest, None, "nothing is near");
+    assert_eq!(scene.all().nearest(&point, DistanceOptions::default()).nearest, None, "nothing is near");
     let mut pairs = Vec::new();
-    assert_eq!(scene.pairs_within(1.0, DistanceOptions::default(), &mut pairs).tested, 0, "no pairs");
+    assert_eq!(scene.all().pairs_within(1.0, DistanceOptions::default(), &mut pairs).tested, 0, "no pairs");
     assert_eq!(scene.remove(0), None, "nothing to remove");
     assert_eq!(scene.insert(Ball::new(1.0).unwrap()), Ok(0), "the first");
-    assert_eq!(scene.ray_cast(along_x(), RayCastOptions::default()).unwrap().first.unwrap().hit.lambda, 4.0, "and hit");
+    assert_eq!(
+        scene.all().ray_cast(along_x(), RayCastOptions::default()).unwrap().first.unwrap().hit.lambda,
+        4.0,
+        "and hit"
+    );
 }
 
 /// A support map that is none.
@@ -62,14 +66,14 @@ fn bodies_that_are_none_are_refused_by_index() {
     assert_eq!(moved, Err(SceneError::NotFinite { body: 1 }), "one did not move");
     let nearest = |x| {
         let point = Point::new(DVec2::splat(x)).unwrap();
-        scene.nearest(&point, DistanceOptions::default()).nearest.map(|n| (n.body, n.distance.distance))
+        scene.all().nearest(&point, DistanceOptions::default()).nearest.map(|n| (n.body, n.distance.distance))
     };
     assert_eq!([nearest(2.0), nearest(11.0), nearest(13.0)], [1, 0, 2].map(|i| Some((i, 0.0))), "the others did");
     // One that becomes none inside the scene: single queries of it are undecided, and nothing panics.
     let shape = Broken(f64::NAN);
-    let _ = scene.nearest(&shape, DistanceOptions::default());
+    let _ = scene.all().nearest(&shape, DistanceOptions::default());
     let motion = Motion { velocity_a: DVec2::X, velocity_b: DVec2::ZERO };
-    let _ = scene.linear_cast(&shape, motion, LinearCastOptions::default());
+    let _ = scene.all().linear_cast(&shape, motion, LinearCastOptions::default());
 }
 
 #[test]
@@ -78,8 +82,10 @@ fn indices_are_kept_and_given_again() {
     assert!(scene.remove(1).is_some() && scene.remove(1).is_none(), "once");
     assert_eq!((scene.len(), scene.iter().map(|(i, _)| i).collect::<Vec<_>>()), (2, vec![0, 2]), "the others stay");
     assert_eq!((scene.insert(ball(6.0)), scene.insert(ball(8.0))), (Ok(1), Ok(3)), "the free one first");
-    let first =
-        scene.ray_cast(Ray { source: DVec3::X * 10.0, direction: DVec3::NEG_X }, RayCastOptions::default()).unwrap();
+    let first = scene
+        .all()
+        .ray_cast(Ray { source: DVec3::X * 10.0, direction: DVec3::NEG_X }, RayCastOptions::default())
+        .unwrap();
     assert_eq!(first.first.unwrap().body, 3, "the last one comes first from there");
 }
 
@@ -87,11 +93,11 @@ fn indices_are_kept_and_given_again() {
 fn of_equals_the_lowest_index_whatever_the_order() {
     let mut scene = Scene::new((0..50).map(|_| ball(0.0))).unwrap();
     scene.remove(0);
-    let first = scene.ray_cast(along_x(), RayCastOptions::default()).unwrap().first.unwrap();
-    let nearest = scene.nearest(&ball(3.0), DistanceOptions::default()).nearest.unwrap();
+    let first = scene.all().ray_cast(along_x(), RayCastOptions::default()).unwrap().first.unwrap();
+    let nearest = scene.all().nearest(&ball(3.0), DistanceOptions::default()).nearest.unwrap();
     assert_eq!((first.body, nearest.body), (1, 1), "the lowest that is there");
     scene.insert(ball(0.0)).unwrap();
-    let first = scene.ray_cast(along_x(), RayCastOptions::default()).unwrap().first.unwrap();
+    let first = scene.all().ray_cast(along_x(), RayCastOptions::default()).unwrap().first.unwrap();
     assert_eq!(first.body, 0, "it is back, though last in the tree");
 }
 
@@ -100,26 +106,29 @@ fn half_spaces_have_no_end() {
     let mut scene = Scene::new([ball(0.0)]).unwrap();
     let floor = scene.insert_half_space(HalfSpace::new(DVec3::Y * 2.0, -2.0).unwrap()); // y ≤ −1
     let down = Ray { source: DVec3::new(1e12, 5.0, -1e12), direction: DVec3::NEG_Y };
-    let cast = scene.ray_cast(down, RayCastOptions::default()).unwrap();
+    let cast = scene.all().ray_cast(down, RayCastOptions::default()).unwrap();
     let first = cast.first.unwrap();
     assert_eq!((first.body, first.hit.lambda, first.hit.normal), (floor, 6.0, Some(DVec3::Y)), "far out");
     assert!(cast.lower <= 6.0 && first.upper >= 6.0, "{first:?}");
     let fall = Motion { velocity_a: DVec3::NEG_Y, velocity_b: DVec3::ZERO };
-    let landed = scene.linear_cast(&ball(7.0), fall, LinearCastOptions::default()).unwrap().first.unwrap();
+    let landed = scene.all().linear_cast(&ball(7.0), fall, LinearCastOptions::default()).unwrap().first.unwrap();
     assert_eq!(
         (landed.body, landed.hit.time, landed.hit.point),
         (floor, 0.5, DVec3::new(7.0, -1.0, 0.0)),
         "on the floor"
     );
     let mut pairs = Vec::new();
-    scene.pairs_within(0.5, DistanceOptions::default(), &mut pairs);
+    scene.all().pairs_within(0.5, DistanceOptions::default(), &mut pairs);
     assert_eq!(pairs.len(), 1, "the ball is 0.5 above the floor");
     assert_eq!((pairs[0].a, pairs[0].b, pairs[0].distance.normal), (0, floor, Some(DVec3::Y)), "{:?}", pairs[0]);
-    let below = scene.nearest(&Point::new(DVec3::Y * -3.0).unwrap(), DistanceOptions::default()).nearest.unwrap();
+    let below = scene.all().nearest(&Point::new(DVec3::Y * -3.0).unwrap(), DistanceOptions::default()).nearest.unwrap();
     assert!(below.body == floor && below.distance.overlap && below.distance.distance == 0.0, "{below:?}");
     assert!(HalfSpace::new(DVec3::ZERO, 1.0).is_err() && HalfSpace::new(DVec3::NAN, 1.0).is_err(), "no half-spaces");
     assert!(scene.remove(floor).is_some_and(|body| body.convex().is_none()), "taken out");
-    assert!(scene.ray_cast(down, RayCastOptions::default()).unwrap().first.is_none(), "nothing is left to fall on");
+    assert!(
+        scene.all().ray_cast(down, RayCastOptions::default()).unwrap().first.is_none(),
+        "nothing is left to fall on"
+    );
 }
 
 /// A capsule of length 2 that turns about z over a floor at y = −1, and falls.
@@ -133,8 +142,9 @@ fn what_turns_lands_on_a_floor() {
         angular_velocity: DVec3::Z * 3.0,
         center: DVec3::Y * y,
     };
-    let cast =
-        |y, fall, end| scene.motion_cast(&rod(y), turns(y, fall), MotionCastOptions::new().with_max_time(end)).unwrap();
+    let cast = |y, fall, end| {
+        scene.all().motion_cast(&rod(y), turns(y, fall), MotionCastOptions::new().with_max_time(end)).unwrap()
+    };
     let stays_up = cast(0.5, 0.0, 100.0);
     assert_eq!((stays_up.first, stays_up.undecided), (None, None), "its ball is clear");
     assert_eq!(cast(0.5, 0.0, f64::INFINITY).undecided, None, "for ever");
@@ -151,7 +161,7 @@ fn what_turns_lands_on_a_floor() {
     assert_eq!(cast(3.0, 1.0, 2.9).undecided, None, "not yet");
     assert_eq!(cast(-0.5, 0.0, 1.0).first.map(|first| first.hit.time), Some(0.0), "in the floor");
     let straight = RigidMotion::translation(DVec3::NEG_Y);
-    let lands = scene.motion_cast(&rod(3.0), straight, MotionCastOptions::new().with_max_time(9.0)).unwrap();
+    let lands = scene.all().motion_cast(&rod(3.0), straight, MotionCastOptions::new().with_max_time(9.0)).unwrap();
     assert_eq!(lands.first.map(|first| first.hit.time), Some(3.0), "as a linear cast");
 }
 
@@ -192,11 +202,11 @@ fn few_bodies_are_asked() {
         let turn = 0.1 + f64::from(i);
         let direction = DVec3::new(turn.sin(), turn.cos(), (turn * 0.7).sin());
         let ray = Ray { source: DVec3::splat(-3.0) + DVec3::splat(0.07 * turn), direction };
-        let answer = scene.ray_cast(ray, RayCastOptions::default()).unwrap();
+        let answer = scene.all().ray_cast(ray, RayCastOptions::default()).unwrap();
         tested += answer.work.tested;
         least += usize::from(answer.first.is_some());
         let point = Point::new(ray.source).unwrap();
-        let answer = scene.nearest(&point, DistanceOptions::default());
+        let answer = scene.all().nearest(&point, DistanceOptions::default());
         tested += answer.work.tested;
         least += 1;
     }
@@ -208,7 +218,7 @@ fn few_bodies_are_asked() {
 fn a_filter_is_asked_for_bodies_near_only() {
     let scene = Scene::new((0..1000).map(|i| ball(f64::from(i) * 3.0))).unwrap();
     let asked = Cell::new(0);
-    let near = scene.nearest(&ball(1500.0), DistanceOptions::default());
+    let near = scene.all().nearest(&ball(1500.0), DistanceOptions::default());
     asked.set(near.work.tested);
     assert!(asked.get() < 10, "{near:?}");
     let alone = distance(&ball(1500.0), scene.get(500).unwrap().convex().unwrap(), DistanceOptions::default());
@@ -242,7 +252,7 @@ fn what_slides_over_a_floor_of_pieces_is_not_caught_at_seams() {
             for step in 0..300 {
                 let x = 1.5 + 0.3217 * f64::from(step);
                 let body = Posed::translated(shape, DVec3::new(x, 0.498, 0.11)).unwrap();
-                floor.contacts_of(&body, 0.001, Default::default(), &mut contacts);
+                floor.all().contacts_of(&body, 0.001, Default::default(), &mut contacts);
                 let pushes_back = |found: &BodyContact<DVec3>| found.contact.normal.y.abs() < 1.0 - 1e-9;
                 caught += contacts.iter().filter(|found| pushes_back(found)).count();
                 left_out += floor.leave_out_seams(&mut contacts);
@@ -252,7 +262,7 @@ fn what_slides_over_a_floor_of_pieces_is_not_caught_at_seams() {
     }
     assert!(caught > 100 && left_out == caught, "{caught} {left_out}");
     let over_the_end = Posed::translated(&ball, DVec3::new(100.2, 0.4, 0.0)).unwrap();
-    tiles.contacts_of(&over_the_end, 0.0, Default::default(), &mut contacts);
+    tiles.all().contacts_of(&over_the_end, 0.0, Default::default(), &mut contacts);
     tiles.leave_out_seams(&mut contacts);
     assert!(contacts.iter().any(|found| found.contact.normal.x > 0.3), "{contacts:?}");
 }
@@ -271,7 +281,7 @@ fn seams_between_two_scenes_are_left_out_whichever_is_the_floor() {
         let pushes_back = |found: &PairContact<DVec3>| found.contact.normal.y.abs() < 1.0 - 1e-9;
         for is_swapped in [false, true] {
             let (a, b) = if is_swapped { (&sleds, &floor) } else { (&floor, &sleds) };
-            a.contacts_between(b, 0.001, Default::default(), &mut contacts);
+            a.all().contacts_between(b, 0.001, Default::default(), &mut contacts);
             let before = contacts.iter().filter(|found| pushes_back(found)).count();
             assert_eq!(a.leave_out_seams_between(b, &mut contacts), before, "{step}");
             assert!(contacts.len() >= 2 && !contacts.iter().any(pushes_back), "{contacts:?}");
@@ -346,6 +356,7 @@ fn the_way_of_a_chain_bends_at_every_scale() {
         let shape = ball_at(1.0, 0.0).expect("finite");
         let joints = [RigidMotion::rotation(DVec3::Z * 3.0, DVec3::ZERO)];
         let cast = scene
+            .all()
             .motion_cast(&shape, ChainMotion::new(&joints), MotionCastOptions::new().with_max_time(1.0))
             .expect("a good motion");
         let time = cast.first.map(|first| first.hit.time).expect("it is on the way");

@@ -101,12 +101,12 @@ impl Stage {
 
     /// The colour that comes back along a ray.
     fn seen(&self, ray: Ray<DVec3>) -> DVec3 {
-        let first = self.scene.ray_cast(ray, RayCastOptions::default()).ok().and_then(|cast| cast.first);
+        let first = self.scene.all().ray_cast(ray, RayCastOptions::default()).ok().and_then(|cast| cast.first);
         let on_body = first.and_then(|first| Some((first.hit.lambda, first.hit.normal?, self.colours[first.body])));
         let (far, mut seen) = match on_body.or_else(|| self.on_floor(ray)) {
             Some((lambda, normal, colour)) => {
                 let shadow = Ray { source: ray.at(lambda) + normal * 1e-5, direction: SUN };
-                let dark = self.scene.any_hit(shadow, RayCastOptions::default()).is_ok_and(|answer| answer.hit);
+                let dark = self.scene.all().any_hit(shadow, RayCastOptions::default()).is_ok_and(|answer| answer.hit);
                 let sunlight = if dark { 0.0 } else { normal.dot(SUN.normalize()).max(0.0) };
                 (lambda, colour * (0.5 + 0.5 * sunlight))
             }

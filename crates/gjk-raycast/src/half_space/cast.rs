@@ -1,13 +1,16 @@
 //! Where a ray, or what sinks like one, enters a half-space.
 
 use convex_support::numerics::bound::roundings;
-use convex_support::{Scalar, Vector};
+use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::HalfSpace;
-use super::plane::Plane;
+use super::plane::{Lowest, Plane};
 use crate::level::Level;
-use crate::{Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
+use crate::{
+    Impact, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit,
+    StartInContact, Status,
+};
 
 impl<V: Vector> HalfSpace<V> {
     /// The ray's first point in the half-space: where n·(s + λd) = offset, λ = (n·s − offset)/(−n·d).
@@ -34,18 +37,11 @@ impl<V: Vector> HalfSpace<V> {
         // What the sums lose.
         let from_source = |lambda, count| begin + lambda + roundings(count, begin + lambda);
         let is_at_once = begin <= zero;
-        let outcome = match outcome {
-            Outcome::Hit(lambda) if lambda > zero => {
-                let lambda = if is_at_once { lambda } else { begin + lambda };
-                Outcome::Hit(RayHit { lambda, point: ray.at(lambda), normal: Some(plane.unit) })
-            }
-            Outcome::Hit(_) => {
-                let point = if is_at_once { ray.source } else { ray.at(begin) };
-                Outcome::Hit(RayHit { lambda: begin, point, normal: None })
-            }
-            Outcome::Miss(miss) => Outcome::Miss(miss),
-            Outcome::Undecided => Outcome::Undecided,
-        };
+        let outcome = outcome.map(|time| {
+            let lambda = if is_at_once { time } else { begin + time };
+            let point = if lambda > zero { ray.at(lambda) } else { ray.source };
+            RayHit { lambda, point, normal: (time > zero).then_some(plane.unit) }
+        });
         let (lower, upper) = if is_at_once {
             (lower, upper)
         } else if upper <= zero {
@@ -54,6 +50,37 @@ impl<V: Vector> HalfSpace<V> {
             (from_source(lower, -4.0).max(begin), from_source(upper, 4.0))
         };
         Ok(RayCast { outcome, lower, upper, status, iterations: 0 })
+    }
+
+    /// When a moving shape, `a`, first touches the half-space, `b`: the ray of its lowest point.
+    ///
+    /// # Errors
+    /// As of [`linear_cast`](crate::linear_cast()).
+    pub fn linear_cast<A: SupportMap<Vector = V> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: Motion<V>,
+        options: LinearCastOptions<V>,
+    ) -> Result<LinearCast<V>, RayCastError> {
+        motion.check(&options)?;
+        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+        let plane = self.plane();
+        let Lowest { height, point } = plane.lowest(shape, options.target_distance.max(zero));
+        let sinking = plane.sinking([motion.velocity_a, -motion.velocity_b]);
+        let goes_deeper = options.start_in_contact == StartInContact::IfDeeper;
+        if goes_deeper && height.least() <= zero && !(sinking.most() > zero) {
+            let outcome = Outcome::Miss(Miss { axis: plane.unit });
+            let (lower, upper, status) = (infinity, infinity, Status::Converged);
+            return Ok(LinearCast { outcome, lower, upper, status, iterations: 1 });
+        }
+        let Landing { outcome, lower, upper, status } = plane.crossing(height, sinking, options.max_time);
+        let has_normal = height.most() >= zero || goes_deeper;
+        let outcome = outcome.map(|time| {
+            // Of a target distance, the point of the half-space below.
+            let point = point + motion.velocity_a * time;
+            Impact { time, point, normal: (time > zero || has_normal).then_some(plane.unit) }
+        });
+        Ok(LinearCast { outcome, lower, upper, status, iterations: 1 })
     }
 }
 

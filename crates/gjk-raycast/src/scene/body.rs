@@ -1,0 +1,155 @@
+//! A body of a scene, and what a single query says of it.
+
+use convex_support::{AngularVelocity as _, Scalar as _, ScalarOf, SupportMap, Vector};
+
+use crate::{
+    ChainMotion, Contact, Distance, DistanceOptions, HalfSpace, Impact, LinearCast, LinearCastOptions, Motion,
+    MotionCast, MotionCastOptions, MotionIterate, Ray, RayCast, RayCastError, RayCastOptions, RigidMotion,
+    SignedDistance, SignedDistanceOptions, Trajectory, contact, distance, linear_cast, motion_cast, motion_cast_with,
+    ray_cast, signed_distance,
+};
+
+/// A body of a [`Scene`]: a bounded shape, or a half-space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "S: serde::Serialize, HalfSpace<S::Vector>: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "S: serde::Deserialize<'de>, HalfSpace<S::Vector>: serde::Deserialize<'de>"))
+)]
+pub enum Body<S: SupportMap> {
+    /// A bounded convex body.
+    Convex(S),
+    /// All on one side of a plane.
+    HalfSpace(HalfSpace<S::Vector>),
+}
+
+impl<S: SupportMap> Body<S> {
+    /// The bounded body, if it is one.
+    #[must_use]
+    pub fn convex(&self) -> Option<&S> {
+        match self {
+            Self::Convex(body) => Some(body),
+            Self::HalfSpace(_) => None,
+        }
+    }
+
+    /// The distance from a shape to this body.
+    #[inline]
+    pub(super) fn distance_from<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        options: DistanceOptions<S::Vector>,
+    ) -> Distance<S::Vector> {
+        match self {
+            Self::Convex(body) => distance(shape, body, options),
+            Self::HalfSpace(half_space) => half_space.distance_from(shape),
+        }
+    }
+
+    /// How far a shape, `a`, is from this body, `b`, or how deep in it, by
+    /// [`signed_distance`](crate::signed_distance()) or, for a half-space, by
+    /// [`HalfSpace::signed_distance`](crate::HalfSpace::signed_distance), which needs no options.
+    pub fn signed_distance<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        options: SignedDistanceOptions<S::Vector>,
+    ) -> SignedDistance<S::Vector> {
+        match self {
+            Self::Convex(body) => signed_distance(shape, body, options),
+            Self::HalfSpace(half_space) => half_space.signed_distance(shape),
+        }
+    }
+
+    /// The contact of a shape, `a`, with this body, `b`, by [`contact`](crate::contact()) or, for a half-space, by
+    /// [`HalfSpace::contact`](crate::HalfSpace::contact), which needs no options; `None` if they are farther apart than
+    /// `within`. [`Among::contacts_of`](crate::Among::contacts_of) asks all bodies that are near.
+    pub fn contact<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        within: ScalarOf<S>,
+        options: SignedDistanceOptions<S::Vector>,
+    ) -> Option<Contact<S::Vector>> {
+        match self {
+            Self::Convex(body) => contact(shape, body, within, options),
+            Self::HalfSpace(half_space) => half_space.contact(shape, within),
+        }
+    }
+
+    #[inline]
+    pub(super) fn ray_cast(
+        &self,
+        ray: Ray<S::Vector>,
+        options: RayCastOptions<S::Vector>,
+    ) -> Result<RayCast<S::Vector>, RayCastError> {
+        match self {
+            Self::Convex(body) => ray_cast(body, ray, options),
+            Self::HalfSpace(half_space) => half_space.ray_cast(ray, options),
+        }
+    }
+
+    /// The cast of a shape against this body.
+    #[inline]
+    pub(super) fn linear_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: Motion<S::Vector>,
+        options: LinearCastOptions<S::Vector>,
+    ) -> Result<LinearCast<S::Vector>, RayCastError> {
+        match self {
+            Self::Convex(body) => linear_cast(shape, body, motion, options),
+            Self::HalfSpace(half_space) => half_space.linear_cast(shape, motion, options),
+        }
+    }
+
+    /// The cast of a shape that moves and turns against this body, which is at rest.
+    pub(crate) fn motion_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: &impl Trajectory<Vector = S::Vector>,
+        options: MotionCastOptions<S::Vector>,
+        observer: impl FnMut(MotionIterate<S::Vector>),
+    ) -> Result<MotionCast<S::Vector>, RayCastError> {
+        match self {
+            Self::Convex(body) => motion_cast_with(shape, motion, body, RigidMotion::default(), options, observer),
+            Self::HalfSpace(half_space) => half_space.motion_cast_with(shape, motion, options, observer),
+        }
+    }
+
+    /// The cast of a shape, `a`, and this body, `b`, as both move: [`motion_cast`](crate::motion_cast()), also of a
+    /// half-space.
+    ///
+    /// # Errors
+    /// As of [`motion_cast`](crate::motion_cast()).
+    pub fn motion_cast_of_both<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: RigidMotion<S::Vector>,
+        of_body: RigidMotion<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
+    ) -> Result<MotionCast<S::Vector>, RayCastError> {
+        let half_space = match self {
+            Self::Convex(body) => return motion_cast(shape, motion, body, of_body, options),
+            Self::HalfSpace(half_space) if of_body == RigidMotion::default() => {
+                return half_space.motion_cast(shape, motion, options);
+            }
+            Self::HalfSpace(half_space) => half_space,
+        };
+        let cast = half_space.motion_cast(shape, ChainMotion::new(&seen_from(of_body, motion)), options)?;
+        let outcome = cast.outcome.map(|hit| {
+            let place = of_body.displacement(hit.time);
+            let normal = hit.normal.map(|normal| place.rotation() * normal);
+            Impact { point: place.of(hit.point), normal, ..hit }
+        });
+        Ok(MotionCast { outcome, ..cast })
+    }
+}
+
+/// A motion as seen from something that moves: first by the motion, and then back by that of the observer.
+pub(super) fn seen_from<V: Vector>(
+    RigidMotion { velocity, angular_velocity, center }: RigidMotion<V>,
+    motion: RigidMotion<V>,
+) -> [RigidMotion<V>; 3] {
+    let turned_back = RigidMotion::rotation(angular_velocity.scaled(-V::Scalar::ONE), center);
+    [turned_back, RigidMotion::translation(-velocity), motion]
+}

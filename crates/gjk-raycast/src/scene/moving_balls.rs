@@ -1,0 +1,138 @@
+//! A moving shape within balls, one after the other.
+
+use convex_support::glam::Vec4;
+use convex_support::{
+    Aabb, Bound, BoundingSphere, Boxes, CoarseBound, CoarseSweptBox, CoarseUnit, Frame, Scalar, SupportMap, SweptBox,
+    Vector,
+};
+use num_traits::Float as _;
+use smallvec::SmallVec;
+
+use crate::{MotionCastOptions, MovingBall, Trajectory};
+
+/// The most parts that a motion is cut into.
+const MAX_PARTS: usize = 16;
+
+/// How much larger than the ball of the shape the ball of a part may be, before the motion is cut into more parts.
+const GROWTH: f64 = 1.5;
+
+/// When a shape may meet a box, from below: when the first of the balls does that contain it during the motion, and
+/// everything no farther from it than the target distance.
+pub(super) struct MovingBalls<V: Vector>(SmallVec<[MovingBox<V>; MAX_PARTS]>);
+
+impl<V: Vector> MovingBalls<V> {
+    /// The motion is cut into as few parts as make their balls, which move at constant velocity, hardly larger than
+    /// that of the shape. A motion without an end is one part. The options are checked.
+    pub(super) fn new<A: SupportMap<Vector = V> + ?Sized>(
+        shape: &A,
+        motion: &impl Trajectory<Vector = V>,
+        options: &MotionCastOptions<V>,
+    ) -> Self {
+        let core = shape.core();
+        let radius = core.extent + core.radius + options.target_distance;
+        let (ball, large) = (BoundingSphere { center: core.origin, radius }, radius * Scalar::from_f64(GROWTH));
+        let part = |index: usize, count: usize| {
+            let at = |index| match index {
+                0 => V::Scalar::ZERO,
+                _ => options.max_time * V::Scalar::from_f64(index as f64 / count as f64),
+            };
+            let (start, end) = (at(index), at(index + 1));
+            (start, end - start, motion.moving_ball(ball, [start, end]))
+        };
+        let mut count = 1;
+        while count < MAX_PARTS
+            && options.max_time.is_finite()
+            && (0..count).any(|index| part(index, count).2.radius > large)
+        {
+            count *= 2;
+        }
+        let moving = |index| {
+            let (start, duration, ball) = part(index, count);
+            MovingBox::new(start, duration, ball)
+        };
+        Self((0..count).map(moving).collect())
+    }
+}
+
+/// The box around a moving ball, when it begins to move, and how long it does, rounded up.
+struct MovingBox<V: Vector> {
+    start: V::Scalar,
+    duration: V::Scalar,
+    swept: SweptBox<V>,
+}
+
+impl<V: Vector> MovingBox<V> {
+    /// With room for the rounding of where the ball is.
+    fn new(start: V::Scalar, duration: V::Scalar, ball: MovingBall<V>) -> Self {
+        let number = V::Scalar::from_f64;
+        let within = ball.start.abs() + V::splat(ball.radius);
+        let reach = V::from_fn(|i| {
+            let speed = ball.velocity.get(i).abs();
+            let way = if speed == Scalar::ZERO { speed } else { speed * duration };
+            ball.start.get(i).abs() + way + ball.radius
+        });
+        // What moves for ever is as far as it is asked about.
+        let reach = if reach.is_finite() { reach } else { within };
+        let room = number(64.0) * V::Scalar::EPSILON * reach.max_element();
+        let swept = SweptBox::new(V::splat(ball.radius + room), ball.start, ball.velocity);
+        Self { start, duration: duration * (V::Scalar::ONE + number(8.0) * V::Scalar::EPSILON), swept }
+    }
+}
+
+impl<V: Vector> Bound<V> for MovingBalls<V> {
+    type Coarse = CoarseMovingBalls<V>;
+
+    fn bound(&self, around: &Aabb<V>) -> V::Scalar {
+        // What the sum of a part's start and the time in it loses.
+        let deflate = V::Scalar::ONE - V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;
+        self.0.iter().fold(V::Scalar::infinity(), |first, part| {
+            let after = part.swept.bound(around);
+            if after <= part.duration { first.min((part.start + after) * deflate) } else { first }
+        })
+    }
+
+    fn coarse(&self, frame: &Frame<V>) -> CoarseMovingBalls<V> {
+        let coarse = |part: &MovingBox<V>| {
+            let swept = part.swept.coarse(frame);
+            // Without an end it ends where all numbers do.
+            let duration = swept.limit(part.duration.as_f64());
+            CoarseMovingBox { start: 0.0, duration, per_part: 1.0, swept }
+        };
+        let mut balls: SmallVec<[_; MAX_PARTS]> = self.0.iter().map(coarse).collect();
+        // All in the finest unit of time.
+        let per_unit = balls.iter().map(|ball| ball.swept.unit().per_unit()).fold(0.0, f64::max).min(f64::MAX);
+        for (ball, part) in balls.iter_mut().zip(&self.0) {
+            ball.start = CoarseUnit::down(part.start.as_f64() * per_unit).max(0.0);
+            ball.per_part = CoarseUnit::down(per_unit / ball.swept.unit().per_unit());
+        }
+        CoarseMovingBalls { balls, unit: CoarseUnit::new::<V::Scalar>(per_unit) }
+    }
+}
+
+/// [`MovingBalls`] in the frame of a tree.
+pub(super) struct CoarseMovingBalls<V> {
+    balls: SmallVec<[CoarseMovingBox<V>; MAX_PARTS]>,
+    unit: CoarseUnit,
+}
+
+struct CoarseMovingBox<V> {
+    start: f32,
+    /// In the unit of the part.
+    duration: f32,
+    per_part: f32,
+    swept: CoarseSweptBox<V>,
+}
+
+impl<V: Vector> CoarseBound for CoarseMovingBalls<V> {
+    fn bounds(&self, boxes: &Boxes) -> Vec4 {
+        self.balls.iter().fold(Vec4::INFINITY, |first, part| {
+            let after = part.swept.bounds(boxes);
+            let time = (after * part.per_part + part.start).min(Vec4::MAX);
+            first.min(Vec4::select(after.cmple(Vec4::splat(part.duration)), time, Vec4::INFINITY))
+        })
+    }
+
+    fn limit(&self, limit: f64) -> f32 {
+        self.unit.limit(limit)
+    }
+}
