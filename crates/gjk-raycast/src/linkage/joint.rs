@@ -35,3 +35,23 @@ pub struct Link<S: SupportMap> {
     /// The bodies, in the frame of the joint. There may be none.
     pub bodies: alloc::vec::Vec<S>,
 }
+
+impl<V: Vector> Joint<V> {
+    /// A joint that turns about an axis, at a pose in its parent's frame.
+    #[must_use]
+    pub fn revolute(parent: Option<usize>, pose: Pose<V>, axis: V::AngularVelocity) -> Self {
+        Self { parent, pose, kind: JointKind::Revolute(axis) }
+    }
+
+    /// A joint that slides along an axis.
+    #[must_use]
+    pub fn prismatic(parent: Option<usize>, pose: Pose<V>, axis: V) -> Self {
+        Self { parent, pose, kind: JointKind::Prismatic(axis) }
+    }
+
+    /// A joint that does not move.
+    #[must_use]
+    pub fn fixed(parent: Option<usize>, pose: Pose<V>) -> Self {
+        Self { parent, pose, kind: JointKind::Fixed }
+    }
+}

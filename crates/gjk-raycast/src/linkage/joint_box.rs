@@ -27,12 +27,11 @@ use smallvec::SmallVec;
 
 use super::error::LinkageError;
 use super::frame::epsilons;
+use super::link_motion::Route;
 use super::linkage::Linkage;
-use super::moving::{Moving, Value};
 use super::path::LinkageOptions;
-use super::proof::FreeBox;
-use super::route::Route;
-use super::stage::JointStage;
+use super::result::FreeBox;
+use super::stage::{JointStage, Moving, Value};
 use crate::axial;
 use crate::{SignedDistanceOptions, signed_distance};
 

@@ -11,10 +11,8 @@ use num_traits::Float;
 use super::error::LinkageError;
 use super::frame::{LinkFrame, epsilons};
 use super::joint::{Joint, JointKind, Link};
-use super::link_motion::{LinkMotion, PathEdge};
-use super::route::Route;
+use super::link_motion::{LinkMotion, PathEdge, Route};
 use super::stage::JointStage;
-use crate::Pose;
 use crate::axial;
 use crate::motion::Bounds;
 
@@ -191,39 +189,19 @@ impl<S: SupportMap> Linkage<S> {
         placed.map_err(|_| LinkageError::BodyNotFinite { link, body })
     }
 
-    /// How far any point of a link goes at most, where joint values change from the one to the other. So a link stays
-    /// farther from what is at rest than a margin as long as that is less than the [room](crate::FreeStep) of its
-    /// distance, whichever way the joints have taken in between.
+    /// How far any point of a link goes at most, where joint values change from the one to the other: in any direction,
+    /// or along a unit vector, and then negative where all points certainly go the other way. So a link stays farther
+    /// from what is at rest than a margin as long as that is less than the [room](crate::FreeStep) of its distance,
+    /// whichever way the joints have taken in between. Against the normal of a distance it is how much nearer the link
+    /// may come to that one.
     ///
-    /// If they go straight, within a unit of time, it is no more than the highest speed, nor than that at first and half
-    /// of the highest acceleration.
-    ///
-    /// # Errors
-    /// As of [`placed`](Self::placed).
-    pub fn way(&self, link: usize, from: &[ScalarOf<S>], to: &[ScalarOf<S>]) -> Result<ScalarOf<S>, LinkageError> {
-        self.greatest_way(link, from, to, None)
-    }
-
-    /// The same along a direction, a unit vector: negative where all points certainly go the other way. Towards the other
-    /// body, against the normal of a distance, it is how much nearer the link may come to that one.
-    ///
-    /// At first the points of a body, whose support function is `h` about an origin of the velocity `v`, go by
-    /// `n·v + h(n × ω)`.
+    /// If the joints go straight, within a unit of time, it is no more than the highest speed, nor than that at first and
+    /// half of the highest acceleration. At first the points of a body, whose support function is `h` about an origin of
+    /// the velocity `v`, go along `n` by `n·v + h(n × ω)`.
     ///
     /// # Errors
     /// As of [`placed`](Self::placed).
-    pub fn way_along(
-        &self,
-        link: usize,
-        from: &[ScalarOf<S>],
-        to: &[ScalarOf<S>],
-        n: S::Vector,
-    ) -> Result<ScalarOf<S>, LinkageError> {
-        self.greatest_way(link, from, to, Some(n))
-    }
-
-    /// The greatest way of a point of a link, along a direction or in any.
-    fn greatest_way(
+    pub fn way(
         &self,
         link: usize,
         from: &[ScalarOf<S>],
@@ -316,24 +294,4 @@ fn ball_around<V: Vector>(balls: impl Iterator<Item = BoundingSphere<V>> + Clone
     let center = (least + most) * V::Scalar::from_f64(0.5);
     let reach = |ball: BoundingSphere<V>| (ball.center - center).norm() + ball.radius;
     BoundingSphere { center, radius: raised(balls.map(reach).fold(V::Scalar::ZERO, Float::max)) }
-}
-
-impl<V: Vector> Joint<V> {
-    /// A joint that turns about an axis, at a pose in its parent's frame.
-    #[must_use]
-    pub fn revolute(parent: Option<usize>, pose: Pose<V>, axis: V::AngularVelocity) -> Self {
-        Self { parent, pose, kind: JointKind::Revolute(axis) }
-    }
-
-    /// A joint that slides along an axis.
-    #[must_use]
-    pub fn prismatic(parent: Option<usize>, pose: Pose<V>, axis: V) -> Self {
-        Self { parent, pose, kind: JointKind::Prismatic(axis) }
-    }
-
-    /// A joint that does not move.
-    #[must_use]
-    pub fn fixed(parent: Option<usize>, pose: Pose<V>) -> Self {
-        Self { parent, pose, kind: JointKind::Fixed }
-    }
 }

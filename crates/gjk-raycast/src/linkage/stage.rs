@@ -1,10 +1,17 @@
-//! A joint that moves, and the way to it from the one before.
+//! A joint that moves, and how a frame at the end of some joints moves, at one moment.
 
+use convex_support::numerics::elementary::sin_cos;
 use convex_support::{Matrix as _, Scalar, Vector};
+use num_traits::Float as _;
 
-use super::frame::LinkFrame;
+use super::frame::{LinkFrame, epsilons};
 use super::joint::JointKind;
 use crate::axial;
+
+/// What a rotation about an axis is wrong by as an operator, in ε, beside what its angle is. The unit axis is wrong by
+/// 1.5, which counts twice. The term of the sine loses 3 and that of `1 − cos ≤ 2` twice 6; sine and cosine themselves 3,
+/// and the sum of the terms 5. The product with the rotation before it loses 4.5.
+const OF_TURN: f64 = 31.0;
 
 /// The way from one moving joint to the next, and how that moves: `x ↦ fixed·motion(value)·x`.
 #[derive(Clone, Debug)]
@@ -15,21 +22,35 @@ pub(super) struct JointStage<V: Vector> {
     pub(super) arm: V::Scalar,
     /// How far that is from the axis of the joint before it.
     pub(super) off_axis: V::Scalar,
-    /// A unit vector in its own frame.
+    /// A unit vector in its own frame, which it turns about or slides along.
     pub(super) axis: V,
-    pub(super) motion: StageMotion<V>,
+    /// Of a joint that turns: with `A` the matrix of the product with the axis, the rotation is `1 + sin·A + (1 − cos)·A²`
+    /// (Rodrigues), and these are its terms as the fixed rotation turns them.
+    turn: Option<[V::Matrix; 2]>,
     /// The place of its value among the joint values.
     pub(super) column: usize,
 }
 
-/// How a stage moves.
-#[derive(Clone, Debug)]
-pub(super) enum StageMotion<V: Vector> {
-    /// By an angle about the axis. With `A` the matrix of the product with it, the rotation is `1 + sin·A + (1 − cos)·A²`
-    /// (Rodrigues); `sine` and `versine` are its terms as the fixed rotation turns them.
-    Turn { sine: V::Matrix, versine: V::Matrix },
-    /// Along the axis, as the fixed rotation turns it.
-    Slide { along: V },
+/// A value of a joint at a moment, and how fast it changes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Value<S> {
+    pub(super) value: S,
+    pub(super) rate: S,
+    /// What rounding has done to the value.
+    pub(super) error: S,
+}
+
+/// A frame that moves, with the first two derivatives of its place by time, where all joint values change at constant
+/// rates. Only the frame has a bound on its error; derivatives are as they are computed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moving<V: Vector> {
+    pub(super) frame: LinkFrame<V>,
+    /// The angular velocity, as of [`axial`], and its derivative.
+    pub(super) spin: V,
+    pub(super) spin_rate: V,
+    /// The velocity and the acceleration of the frame's origin.
+    velocity: V,
+    acceleration: V,
 }
 
 impl<V: Vector> JointStage<V> {
@@ -45,9 +66,8 @@ impl<V: Vector> JointStage<V> {
     fn about(fixed: LinkFrame<V>, axis: V, turns: bool, column: usize) -> Self {
         let product = axial::matrix(axis);
         let sine = fixed.rotation * product;
-        let turn = StageMotion::Turn { sine, versine: sine * product };
-        let motion = if turns { turn } else { StageMotion::Slide { along: fixed.rotation * axis } };
-        Self { arm: fixed.translation.norm(), off_axis: V::Scalar::ZERO, fixed, axis, motion, column }
+        let turn = turns.then(|| [sine, sine * product]);
+        Self { arm: fixed.translation.norm(), off_axis: V::Scalar::ZERO, fixed, axis, turn, column }
     }
 
     /// The stage that moves as this one does, from another frame on; or that takes it back, with the sign -1.
@@ -56,7 +76,7 @@ impl<V: Vector> JointStage<V> {
     }
 
     pub(super) fn turns(&self) -> bool {
-        matches!(self.motion, StageMotion::Turn { .. })
+        self.turn.is_some()
     }
 
     /// Its axis and its origin, by its frame as it has moved.
@@ -69,16 +89,63 @@ impl<V: Vector> JointStage<V> {
     pub(super) fn rise(&self, [axis, origin]: [V; 2], n: V, point: V) -> V::Scalar {
         n.dot(if self.turns() { axial::turning(axis, point - origin) } else { axis })
     }
+}
 
-    /// The rotation of a stage that turns, from its fixed part's on.
-    #[inline(always)]
-    pub(super) fn rotation(
-        &self,
-        sine: &V::Matrix,
-        versine: &V::Matrix,
-        (sin, cos): (V::Scalar, V::Scalar),
-    ) -> V::Matrix {
-        let rest = V::Scalar::ONE - cos;
-        V::Matrix::from_cols_fn(|j| self.fixed.rotation.col(j) + sine.col(j) * sin + versine.col(j) * rest)
+impl<V: Vector> Moving<V> {
+    /// The world, at rest.
+    pub(super) const WORLD: Self =
+        Self { frame: LinkFrame::WORLD, spin: V::ZERO, spin_rate: V::ZERO, velocity: V::ZERO, acceleration: V::ZERO };
+
+    /// The velocity of the point of the frame that is at `point`.
+    #[inline]
+    pub(super) fn velocity_at(&self, point: V) -> V {
+        self.velocity + axial::turning(self.spin, point - self.frame.translation)
+    }
+
+    /// The acceleration of that point.
+    #[inline]
+    pub(super) fn acceleration_at(&self, point: V) -> V {
+        let arm = point - self.frame.translation;
+        let turning = axial::turning(self.spin, axial::turning(self.spin, arm));
+        self.acceleration + axial::turning(self.spin_rate, arm) + turning
+    }
+
+    /// The frame beyond a stage.
+    ///
+    /// Its origin is a point of this frame, or slides along it. It has the angular velocity `ω + w` with the joint's own
+    /// `w`, which this frame turns, so that its derivative is `ω′ + ω × w`; and what slides at `d` has the acceleration
+    /// `2ω × d` more than a point of this frame (Coriolis).
+    #[inline]
+    pub(super) fn beyond(&self, stage: &JointStage<V>, Value { value, rate, error }: Value<V::Scalar>) -> Self {
+        let &JointStage { ref fixed, arm, axis, ref turn, .. } = stage;
+        if let Some([sine, versine]) = turn {
+            let (sin, cos) = sin_cos(value);
+            let rest = V::Scalar::ONE - cos;
+            let turned = |j| fixed.rotation.col(j) + sine.col(j) * sin + versine.col(j) * rest;
+            let rotation = self.frame.rotation * V::Matrix::from_cols_fn(turned);
+            let moved = self.frame.moved(fixed.translation, arm, fixed.shift_error);
+            let turn_error = moved.turn_error + fixed.turn_error + error + epsilons(OF_TURN);
+            let spin = axial::turned(&rotation, axis) * rate;
+            return Self {
+                velocity: self.velocity_at(moved.translation),
+                acceleration: self.acceleration_at(moved.translation),
+                spin: self.spin + spin,
+                spin_rate: self.spin_rate + axial::product(self.spin, spin),
+                frame: LinkFrame { rotation, turn_error, ..moved },
+            };
+        }
+        let (along, length) = (fixed.rotation * axis, value.abs());
+        // The axis is turned, and wrong by 1.5ε before; the product and the sum are rounded.
+        let lost = (fixed.turn_error + epsilons(6.0)) * (length + arm);
+        let moved = self.frame.moved(fixed.translation + along * value, arm + length, fixed.shift_error + error + lost);
+        let turn_error = moved.turn_error + fixed.turn_error + epsilons(4.5);
+        let slide = self.frame.rotation * along * rate;
+        let coriolis = axial::turning(self.spin, slide);
+        Self {
+            velocity: self.velocity_at(moved.translation) + slide,
+            acceleration: self.acceleration_at(moved.translation) + coriolis + coriolis,
+            frame: LinkFrame { rotation: self.frame.rotation * fixed.rotation, turn_error, ..moved },
+            ..*self
+        }
     }
 }

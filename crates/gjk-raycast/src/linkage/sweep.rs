@@ -15,7 +15,7 @@ use num_traits::Float as _;
 use super::frame::epsilons;
 use super::link_motion::PathEdge;
 use super::linkage::{Around, LinkView, Skeleton};
-use super::moving::Moving;
+use super::stage::Moving;
 use crate::RayCastError;
 use crate::axial;
 use crate::half_space::Plane;
@@ -41,9 +41,11 @@ pub(super) struct Near<S> {
     pub(super) other: usize,
 }
 
-/// What a sweep works with; it is kept from edge to edge.
+/// What [`Linkage::path`](crate::Linkage::path) works with. Once it has served a path of a linkage, the next allocates
+/// nothing.
 #[derive(Clone, Debug, Default)]
-pub(super) struct SweepSpace<V: Vector> {
+pub struct PathWorkspace<V: Vector> {
+    pub(super) half_spaces: Vec<(usize, Plane<V>)>,
     /// How the joints move at the middle of a part.
     moving: Vec<Moving<V>>,
     /// The views that are not known to be free in the parts that are being looked at.
@@ -54,26 +56,28 @@ pub(super) struct SweepSpace<V: Vector> {
     found: Vec<usize>,
     /// What has been found and not yet shown.
     near: Vec<Near<V::Scalar>>,
-    pub(super) parts: usize,
+}
+
+impl<V: Vector> PathWorkspace<V> {
+    /// An empty one.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
 }
 
 /// A look for what is near along an edge.
 pub(super) struct Sweep<'s, V: Vector> {
     pub(super) skeleton: &'s Skeleton<V>,
     pub(super) tree: &'s Bvh<V>,
-    pub(super) half_spaces: &'s [(usize, Plane<V>)],
     pub(super) edge: PathEdge<'s, V::Scalar>,
     /// How near is too near; infinite where everything is to be shown.
     pub(super) target: V::Scalar,
-    pub(super) space: &'s mut SweepSpace<V>,
-}
-
-/// A part of an edge: half of its duration, and whether it is as short as it gets.
-#[derive(Clone, Copy)]
-struct EdgePart<S> {
-    times: [S; 2],
-    half: S,
-    is_last: bool,
+    pub(super) space: &'s mut PathWorkspace<V>,
+    /// The time from which on nothing matters.
+    pub(super) end: V::Scalar,
+    /// The parts that were looked at.
+    pub(super) parts: usize,
 }
 
 /// Everything that a ball touches in a part of an edge.
@@ -88,12 +92,10 @@ struct SweptBall<V: Vector> {
 }
 
 impl<V: Vector> Sweep<'_, V> {
-    /// Shows what may come near in an edge that takes some time: 1, or 0 of a path that is a pose. It is shown in the
-    /// order of time but for what is near for long, and beside it the bounds of its view. The answer is a time from which
-    /// on nothing matters.
+    /// Shows what may come near until the end. It is shown in the order of time but for what is near for long, and beside
+    /// it the bounds of its view. The answer is a time from which on nothing matters.
     pub(super) fn run(
         &mut self,
-        duration: V::Scalar,
         show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>) -> Result<V::Scalar, RayCastError>,
     ) -> Result<(), RayCastError> {
         let (space, views) = (&mut *self.space, &self.skeleton.views);
@@ -102,8 +104,7 @@ impl<V: Vector> Sweep<'_, V> {
         space.near.clear();
         space.views.clear();
         space.views.extend(0..views.len());
-        let mut end = duration;
-        self.visit([V::Scalar::ZERO, duration], 0, 0..views.len(), &mut end, show)
+        self.visit([V::Scalar::ZERO, self.end], 0, 0..views.len(), show)
     }
 
     /// Looks at a part of the edge for what is not known to be free in all of it.
@@ -112,27 +113,26 @@ impl<V: Vector> Sweep<'_, V> {
         times @ [from, to]: [V::Scalar; 2],
         depth: u32,
         views: Range<usize>,
-        end: &mut V::Scalar,
         show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>) -> Result<V::Scalar, RayCastError>,
     ) -> Result<(), RayCastError> {
-        if from > *end {
+        if from > self.end {
             return Ok(());
         }
         let half = (to - from) * V::Scalar::from_f64(0.5);
         let is_last = depth == MAX_DEPTH || half == V::Scalar::ZERO || self.target == V::Scalar::infinity();
         self.place(from + half);
-        self.space.parts += 1;
+        self.parts += 1;
         let rest = self.space.views.len();
         for at in views {
             let view = self.space.views[at];
-            if self.is_coarse(view, EdgePart { times, half, is_last }) {
+            if self.is_coarse(view, times, half, is_last) {
                 self.space.views.push(view);
             }
         }
         let coarse = rest..self.space.views.len();
         if !coarse.is_empty() {
             for part in [[from, from + half], [from + half, to]] {
-                self.visit(part, depth + 1, coarse.clone(), end, show)?;
+                self.visit(part, depth + 1, coarse.clone(), show)?;
             }
             self.space.views.truncate(rest);
         }
@@ -140,9 +140,9 @@ impl<V: Vector> Sweep<'_, V> {
             join(&mut self.space.near);
             for near in self.space.near.drain(..) {
                 // A contact found before bounds those after it.
-                if near.from <= *end {
-                    let cut = Near { to: near.to.min(*end), ..near };
-                    *end = end.min(show(&cut, &self.space.bounds[near.view])?);
+                if near.from <= self.end {
+                    let cut = Near { to: near.to.min(self.end), ..near };
+                    self.end = self.end.min(show(&cut, &self.space.bounds[near.view])?);
                 }
             }
         }
@@ -160,7 +160,7 @@ impl<V: Vector> Sweep<'_, V> {
 
     /// Looks for what is near a link, body by body. If something is, and the link moves too far, the part is to be halved
     /// instead.
-    fn is_coarse(&mut self, index: usize, EdgePart { times: [from, to], half, is_last }: EdgePart<V::Scalar>) -> bool {
+    fn is_coarse(&mut self, index: usize, [from, to]: [V::Scalar; 2], half: V::Scalar, is_last: bool) -> bool {
         let LinkView { link, base, route } = &self.skeleton.views[index];
         let (link, base) = (&self.skeleton.links[*link], base.map(|base| &self.skeleton.links[base]));
         let (world, placed, bounds) = (Moving::WORLD, &self.space.moving, &self.space.bounds[index]);
@@ -180,7 +180,7 @@ impl<V: Vector> Sweep<'_, V> {
         if let Some(base) = base {
             found.extend(0..if is_near(&reach, &base.ball) { base.balls.len() } else { 0 });
         } else {
-            let planes = self.half_spaces.iter();
+            let planes = self.space.half_spaces.iter();
             found.extend(planes.filter(|(_, plane)| reach.meets_plane(plane, self.target)).map(|(index, _)| *index));
             self.tree.within(&BoxDistance::new(reach.around()), self.target, |body| {
                 found.push(body);
@@ -194,7 +194,7 @@ impl<V: Vector> Sweep<'_, V> {
                 (Some(base), _) => is_near(&reach, &base.balls[other]),
                 (None, Some(around)) => reach.meets_box(&around, self.target),
                 (None, None) => {
-                    self.half_spaces.iter().any(|(k, plane)| *k == other && reach.meets_plane(plane, self.target))
+                    self.space.half_spaces.iter().any(|(k, plane)| *k == other && reach.meets_plane(plane, self.target))
                 }
             };
             let near = found.iter().filter(|&&other| meets(other));

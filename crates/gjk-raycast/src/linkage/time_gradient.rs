@@ -6,8 +6,8 @@ use convex_support::{Scalar, ScalarOf, SupportMap};
 
 use super::link_motion::PathEdge;
 use super::linkage::Linkage;
-use super::moving::Moving;
 use super::result::{Met, PathContact};
+use super::stage::Moving;
 
 impl<S: SupportMap> Linkage<S> {
     /// The derivatives of the time of a first contact on this path by the joint values at both ends of its edge, for each
