@@ -27,11 +27,11 @@ use smallvec::SmallVec;
 
 use super::error::LinkageError;
 use super::frame::epsilons;
+use super::joint::{JointStage, Moving, Value};
 use super::link_motion::Route;
 use super::linkage::Linkage;
 use super::path::LinkageOptions;
 use super::result::FreeBox;
-use super::stage::{JointStage, Moving, Value};
 use crate::axial;
 use crate::{SignedDistanceOptions, signed_distance};
 
@@ -132,7 +132,8 @@ impl<S: SupportMap> Linkage<S> {
         if let Some(value) = joint_box.iter().position(|[low, high]| low > high) {
             return Err(LinkageError::Interval { value });
         }
-        let search = BoxSearch::new(&route, joint_box, target);
+        let slides = joint_box.iter().map(|[low, high]| low.abs().max(high.abs())).collect();
+        let search = BoxSearch { route: &route, target, slides };
         let bodies = pair.map(|link| &self.bodies[link]);
         let pairs = (0..bodies[0].len()).flat_map(|i| (0..bodies[1].len()).map(move |k| [i, k]));
         let whole = |bodies| BoxPart { bodies, joint_box: joint_box.to_vec(), share: ScalarOf::<S>::ONE };
@@ -204,12 +205,7 @@ struct BoxSearch<'s, V: Vector> {
     slides: Vec<V::Scalar>,
 }
 
-impl<'s, V: Vector> BoxSearch<'s, V> {
-    fn new(route: &'s Route<V>, joint_box: &[[V::Scalar; 2]], target: V::Scalar) -> Self {
-        let slides = joint_box.iter().map(|[low, high]| low.abs().max(high.abs())).collect();
-        Self { route, target, slides }
-    }
-
+impl<V: Vector> BoxSearch<'_, V> {
     fn look<S: SupportMap<Vector = V>>(&self, [a, b]: [&S; 2], joint_box: &[[V::Scalar; 2]]) -> BoxState<V> {
         let (zero, one, two) = (V::Scalar::ZERO, V::Scalar::ONE, V::Scalar::from_f64(2.0));
         let Route { stages, tail, .. } = self.route;

@@ -8,7 +8,7 @@ use convex_support::{BoundingSphere, Matrix as _, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::frame::{LinkFrame, epsilons};
-use super::stage::{JointStage, Moving, Value};
+use super::joint::{JointStage, Moving, Value};
 use crate::motion::Bounds;
 use crate::{Displacement, MovingBall, Trajectory, TurningPlane};
 
@@ -17,9 +17,6 @@ use crate::{Displacement, MovingBall, Trajectory, TurningPlane};
 pub(super) struct Route<V: Vector> {
     pub(super) stages: Vec<JointStage<V>>,
     pub(super) tail: LinkFrame<V>,
-    /// How far the last joint of the link's own way from the world is from the last of this one, beside those of the
-    /// links: not at all, but where the way leads back only.
-    pub(super) rim: V::Scalar,
 }
 
 impl<V: Vector> Route<V> {
@@ -28,7 +25,7 @@ impl<V: Vector> Route<V> {
             let (axis, arm) = (stages[k - 1].axis, stages[k].fixed.translation);
             stages[k].off_axis = if V::DIM == 3 { arm - axis * axis.dot(arm) } else { arm }.norm();
         }
-        Self { stages, tail, rim: V::Scalar::ZERO }
+        Self { stages, tail }
     }
 
     /// The bounds for points that it carries, if its joints change at these rates, and slide no farther than `slides`.
@@ -67,11 +64,8 @@ impl<V: Vector> Route<V> {
             let before = if i == 0 { fixed.then(&stage.fixed) } else { stage.fixed };
             stages.push(stage.from(before, V::Scalar::ONE));
         }
-        if to.stages.len() > shared {
-            return Self::new(stages, to.tail);
-        }
-        let rim = from.stages.get(shared).map_or(V::Scalar::ZERO, |stage| raised(stage.arm));
-        Self { rim, ..Self::new(stages, fixed.then(&to.tail)) }
+        let leads_on = to.stages.len() > shared;
+        Self::new(stages, if leads_on { to.tail } else { fixed.then(&to.tail) })
     }
 }
 
@@ -107,19 +101,15 @@ pub(super) struct LinkMotion<'l, V: Vector> {
     route: &'l Route<V>,
     edge: PathEdge<'l, V::Scalar>,
     start: V::Scalar,
-    bounds: Bounds<V::Scalar>,
+    pub(super) bounds: Bounds<V::Scalar>,
     /// What was last computed, which is mostly asked for several times.
     last: Cell<(V::Scalar, Moving<V>, LinkFrame<V>)>,
 }
 
 impl<'l, V: Vector> LinkMotion<'l, V> {
-    pub(super) fn new(
-        route: &'l Route<V>,
-        edge: PathEdge<'l, V::Scalar>,
-        start: V::Scalar,
-        bounds: Bounds<V::Scalar>,
-    ) -> Self {
-        Self { route, edge, start, bounds, last: Cell::new((V::Scalar::nan(), Moving::WORLD, LinkFrame::WORLD)) }
+    pub(super) fn new(route: &'l Route<V>, edge: PathEdge<'l, V::Scalar>, start: V::Scalar) -> Self {
+        let last = Cell::new((V::Scalar::nan(), Moving::WORLD, LinkFrame::WORLD));
+        Self { route, edge, start, bounds: edge.bounds(route), last }
     }
 
     /// How the last joint's frame moves at a time, and where that of the link is.
@@ -137,7 +127,7 @@ impl<'l, V: Vector> LinkMotion<'l, V> {
     }
 
     /// How far a point of the link is from the origin of its last joint.
-    fn distance(&self, point: V) -> V::Scalar {
+    pub(super) fn distance(&self, point: V) -> V::Scalar {
         self.route.tail.of(point).norm()
     }
 }

@@ -9,9 +9,7 @@ mod link_motion;
 mod linkage;
 mod path;
 mod result;
-mod stage;
 mod sweep;
-mod time_gradient;
 
 pub use error::LinkageError;
 pub use joint::{Joint, JointKind, Link};

@@ -8,7 +8,7 @@ use super::link_motion::{LinkMotion, PathEdge};
 use super::linkage::{LinkView, Linkage};
 use super::result::{FreeInterval, Met, Path, PathContact, PathOutcome, PathStop, PathWork, ProvedSteps};
 use super::sweep::{Near, PathWorkspace, Sweep};
-use crate::motion::{Bounds, checked};
+use crate::motion::checked;
 use crate::options::setters;
 use crate::{Body, MotionCast, MotionCastOptions, MotionHit, Outcome, RayCastError, Scene};
 
@@ -152,15 +152,15 @@ impl<S: SupportMap> Linkage<S> {
             let mut first = First::<S::Vector> { edge: index, contact: None, stop: None };
             let (skeleton, tree, space) = (&self.skeleton, scene.tree(), &mut *workspace);
             let mut sweep = Sweep { skeleton, tree, edge, target, space, end: duration, parts: 0 };
-            sweep.run(&mut |near, bounds| {
+            sweep.run(&mut |near| {
                 work.casts += 1;
-                let (on, options) = ((edge, bounds), options.with_max_time(duration));
+                let options = options.with_max_time(duration);
                 if let Some(base) = self.skeleton.views[near.view].base {
                     let base = Body::Convex(&self.bodies[base][near.other]);
-                    self.cast(near, (&base, None), on, options, &mut first, &mut observer)?;
+                    self.cast(near, (&base, None), edge, options, &mut first, &mut observer)?;
                 } else if let Some(obstacle) = scene.get(near.other) {
                     let at = scene.tree().get(near.other).map(|around| around.center());
-                    self.cast(near, (obstacle, at), on, options, &mut first, &mut observer)?;
+                    self.cast(near, (obstacle, at), edge, options, &mut first, &mut observer)?;
                 }
                 Ok(first.end(duration))
             })?;
@@ -185,17 +185,17 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         near: &Near<ScalarOf<S>>,
         (against, at): (&Body<O>, Option<S::Vector>),
-        (edge, bounds): (PathEdge<'_, ScalarOf<S>>, &Bounds<ScalarOf<S>>),
+        edge: PathEdge<'_, ScalarOf<S>>,
         options: MotionCastOptions<S::Vector>,
         first: &mut First<S::Vector>,
         observer: &mut Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<(), RayCastError> {
         let &Near { from, to, view, body, other } = near;
         let LinkView { link, base, ref route } = self.skeleton.views[view];
-        let (motion, shape) = (LinkMotion::new(route, edge, from, *bounds), &self.bodies[link][body]);
+        let (motion, shape) = (LinkMotion::new(route, edge, from), &self.bodies[link][body]);
         let met = base.map_or(Met::Obstacle(other), |link| Met::Link { link, body: other });
         // A first guess of the normal.
-        let center = motion.at(Scalar::ZERO).0.frame.of(self.skeleton.links[link].balls[body].ball.center);
+        let center = motion.at(Scalar::ZERO).1.of(self.skeleton.links[link].each[body].center);
         let axis = at.map(|at| center - at);
         let mut cast_to = |end| {
             let mut steps = ProvedSteps::NONE;
@@ -220,7 +220,7 @@ impl<S: SupportMap> Linkage<S> {
         if let (Outcome::Hit(hit), Some(base)) = (&mut cast.outcome, base) {
             // It was seen from the second link.
             let route = &self.skeleton.views[base].route;
-            let frame = LinkMotion::new(route, edge, from, Bounds::REST).at(hit.time).1;
+            let frame = LinkMotion::new(route, edge, from).at(hit.time).1;
             (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
         }
         first.take(cast, near, link, met);

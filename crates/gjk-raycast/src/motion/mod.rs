@@ -2,7 +2,6 @@
 
 mod boxes;
 mod chain_motion;
-mod closest_points;
 mod first_contact;
 mod free_interval;
 mod from_contact;

@@ -203,7 +203,10 @@ pub(crate) struct FullMotion<V: Vector> {
 impl<V: Vector> FullMotion<V> {
     const TABLE: Self = Self {
         closer: &Closer::TABLE,
-        straight: without_turning,
+        straight: |body, shapes, cores, motion, options| {
+            let wanted = LinearCastOptions { extra: AtStart::named(), ..linear_options(options) };
+            of_linear_cast(by_search(body, shapes, cores, motion, &wanted, &mut Observer::none()), options.max_time)
+        },
         by_boxes: |pair, time, blocks, axis, limits, is_close| pair.by_boxes(time, blocks, axis, limits, is_close),
         begin_in_contact: |search| search.begin_in_contact(),
         keep_in_contact: |pair, from, to, depth| pair.keep_in_contact(from, to, depth),
@@ -223,17 +226,6 @@ compiled_once! {
     ) -> MotionCast<V> {
         Search::run(&MovingPair::new(shapes, motions, &options), options, observer)
     }
-}
-
-fn without_turning<V: Vector>(
-    body: &mut dyn CastBody<Vector = V>,
-    shapes: [Shape<'_, V>; 2],
-    cores: [Core<V>; 2],
-    motion: Motion<V>,
-    options: &MotionCastOptions<V>,
-) -> MotionCast<V> {
-    let wanted = LinearCastOptions { extra: AtStart::named(), ..linear_options(options) };
-    of_linear_cast(by_search(body, shapes, cores, motion, &wanted, &mut Observer::none()), options.max_time)
 }
 
 /// The same options for a motion that does not turn, but for what they name.

@@ -1,18 +1,23 @@
-//! A look at two bodies nearly in contact, by the corners that were closest at the last look.
+//! Looks at two moving bodies by points that are known to be closest, or were so at the last look.
 //!
-//! Near contact the same corners are mostly closest as a moment ago. Then a plane across them is known, and one support
-//! point proves that it separates the bodies. Where they overlap, the closest points of their cores prove that if they
-//! are nearer than the radii; and of cores that overlap themselves, a simplex of the corners and the point of the
-//! difference farthest from them has zero inside.
+//! Of balls and capsules the closest points of the cores are known in closed form. One support point proves that a plane
+//! between the points keeps the bodies apart. Far from contact that is all. Near contact the same point tells the
+//! distance as well as it can be known; and where the bodies overlap but their cores do not, the points prove that.
+//!
+//! Of other bodies the same corners are mostly closest near contact as a moment ago. Then a plane across them is known,
+//! and one support point proves that it separates the bodies. Where they overlap, the closest points of their cores prove
+//! that if they are nearer than the radii; and of cores that overlap themselves, a simplex of the corners and the point
+//! of the difference farthest from them has zero inside.
 
-use convex_support::{Scalar, Vector};
-use num_traits::Float as _;
+use convex_support::{Scalar, SupportMap as _, Vector};
+use num_traits::Float;
 
-use super::instant::{IN_PLANE, Instant, LONG};
+use super::instant::{IN_PLANE, Instant, LONG, Limits, NEAR};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
-use crate::body::{Pair, PointPair};
-use crate::separation::{Cores, across_corners, slack};
+use crate::body::{Pair, PointPair, TracedSupport as _};
+use crate::gjk::rounding;
+use crate::separation::{Cores, Uncertainty, across_corners, slack};
 use crate::simplex::{MAX_POINTS, project};
 use crate::unit::is_moderate;
 
@@ -107,6 +112,64 @@ impl<V: Vector> CornerFace<V> {
 }
 
 impl<V: Vector> MovingPair<'_, V> {
+    /// The pair at a time by the closest points of its cores; `None` where they do not tell as much as is wanted. What
+    /// is seen closely is to be on the side of `axis`.
+    ///
+    /// All is compiled into one function, so that what is known of the bodies at the time need not be written to memory
+    /// and read again.
+    #[inline(never)]
+    pub(super) fn by_closest_points(
+        &self,
+        time: V::Scalar,
+        axis: V,
+        limits: Limits<V::Scalar>,
+        is_close: bool,
+    ) -> Option<Instant<V>> {
+        let placed = self.placed_here(time);
+        let mut pair = Pair::new(&placed);
+        let offset = placed.offset;
+        let size = pair.size(offset);
+        let points = pair.closest_points(offset, size)?;
+        let v = pair.vector_between(points, offset);
+        let length = v.length();
+        let unit = v / length;
+        // NaN is not apart.
+        if !(length > Scalar::ZERO) {
+            return None;
+        }
+        let (w, _) = pair.support(-unit);
+        self.count(1);
+        let (lower, radius) = (unit.dot(w + offset), pair.radius());
+        let distance = lower - radius;
+        let roughly = rounding(size) + pair.error();
+        if !is_close && distance > roughly * Scalar::from_f64(NEAR) {
+            return Some(self.across(&placed, unit, points, [distance, roughly]));
+        }
+        // Not where they have passed through one another.
+        let is_known = length > size * Scalar::from_f64(LONG) && unit.dot(axis) > Scalar::ZERO;
+        if !is_known || limits.depth > Scalar::ZERO {
+            return None;
+        }
+        // The origin of `b` is at zero, so that nothing is lost of their difference.
+        let known = Uncertainty::of_exact_offset([placed.a.rounding(), placed.b.rounding()], offset);
+        let error_along = known.along(unit);
+        let error = error_along + slack(lower, radius);
+        // NaN is not in the plane.
+        if !(unit.dot(v) - lower <= error * Scalar::from_f64(IN_PLANE)) {
+            return None;
+        }
+        let mut upper: V::Scalar = Float::infinity();
+        if !(distance > error) {
+            // Points of segments are rounded by a product and a sum more than support points.
+            let lost = V::Scalar::EPSILON * pair.extent();
+            upper = known.greatest_length(length, error_along) - radius + slack(length, radius) + lost;
+            if !(upper < Scalar::ZERO) {
+                return None;
+            }
+        }
+        Some(Instant { upper, is_close: true, ..self.across(&placed, unit, points, [distance, error]) })
+    }
+
     /// The bodies at a time as well as it can be known, if what was closest at the last look is so still, and proves
     /// that they are apart or overlap.
     pub(super) fn near_look(&self, placed: &Placed<'_, V>, axis: V) -> Option<Instant<V>> {

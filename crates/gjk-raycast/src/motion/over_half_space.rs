@@ -107,20 +107,13 @@ struct OverHalfSpace<'s, V: Vector> {
     hint: Cell<Hint>,
 }
 
-/// The body's lowest point at one time.
-struct LowestPoint<V: Vector> {
-    /// Its height over the half-space, less the target distance.
-    height: Level<V::Scalar>,
-    /// The point of its core, in the world.
-    core_point: V,
-}
-
 impl<V: Vector> OverHalfSpace<'_, V> {
-    /// The lowest point at a time.
+    /// How high the body's lowest point is over the half-space at a time, less the target distance, and the point of its
+    /// core, in the world.
     ///
-    /// Its height is that of the sum of the origin, what the motion adds to that, and the support point, so that a body
+    /// The height is that of the sum of the origin, what the motion adds to that, and the support point, so that a body
     /// far along the plane is known as well as any other.
-    fn lowest(&self, time: V::Scalar) -> LowestPoint<V> {
+    fn lowest(&self, time: V::Scalar) -> (Level<V::Scalar>, V) {
         let (origin, radius) = (self.body.core.origin, self.body.core.radius);
         let place = self.body.place(time);
         let (shift, turned) = (place.shift, place.swing);
@@ -133,7 +126,7 @@ impl<V: Vector> OverHalfSpace<'_, V> {
         self.iterations.set(self.iterations.get() + 1);
         let error = self.plane.error_along(&moved.rounding());
         let height = self.plane.height([origin, shift, turned, point], error, radius);
-        LowestPoint { height, core_point: moved_origin + point }
+        (height, moved_origin + point)
     }
 }
 
@@ -151,7 +144,7 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
     }
 
     fn at(&self, time: V::Scalar, _axis: V, _limits: Limits<V::Scalar>, _is_close: bool) -> Instant<V> {
-        let LowestPoint { height, core_point } = self.lowest(time);
+        let (height, core_point) = self.lowest(time);
         let unit = self.plane.unit;
         let point_a = core_point - unit * self.body.core.radius;
         // The point below, or of a body that is in the half-space its own lowest point.
@@ -171,7 +164,7 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
 
     /// The normal is that of the plane, whichever is asked for.
     fn level(&self, time: V::Scalar, _normal: V) -> (V::Scalar, V::Scalar) {
-        let Level { value, error } = self.lowest(time).height;
+        let (Level { value, error }, _) = self.lowest(time);
         (value, error)
     }
 
