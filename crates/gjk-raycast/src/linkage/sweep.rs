@@ -85,8 +85,8 @@ struct SweptBall<V: Vector> {
 }
 
 impl<V: Vector> Sweep<'_, V> {
-    /// Shows what may come near until the end, in the order of time but for what is near for long. The answer is a time
-    /// from which on nothing matters.
+    /// Shows what may come near until the end, in the order of time but for what is near for long. Who is shown it answers
+    /// with a time from which on nothing matters.
     pub(super) fn run(
         &mut self,
         show: &mut impl FnMut(&Near<V::Scalar>) -> Result<V::Scalar, RayCastError>,

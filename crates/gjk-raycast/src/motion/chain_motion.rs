@@ -83,7 +83,8 @@ impl<V: Vector> Trajectory for ChainMotion<'_, V> {
                 whole.pivot = next.pivot;
             }
             // x ↦ p + s + (1 + T)(x − p) comes to p + s + s' + T'(p + s − p') + (1 + T')(1 + T)(x − p).
-            let arm = whole.pivot + whole.shift - next.pivot;
+            // The pivots first, so that no more is lost far from the world's origin than near it.
+            let arm = whole.pivot - next.pivot + whole.shift;
             let turned = next.turn * arm;
             let units = V::Scalar::EPSILON * V::Scalar::from_f64(4.0);
             reach += arm.norm() + next.shift.norm();
@@ -203,7 +204,25 @@ impl<S: Scalar> Bounds<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::Bounds;
+    use convex_support::glam::{DVec2, Vec2};
+
+    use super::{Bounds, ChainMotion};
+    use crate::{RigidMotion, Trajectory as _};
+
+    /// The way from joint to joint is short, however far away both are. If the pivot of one were added to how far it has
+    /// moved, and that of the next subtracted, the sum would have lost digits of the place, of which no error tells.
+    #[test]
+    fn joints_far_from_the_origin_lose_no_more_than_is_said() {
+        let (centers, rates) = ([(0.0, 0.0), (1.0, 0.25), (1.5, 1.0)], [0.75, 1.25, -0.5]);
+        let at = |i: usize, x: f64| DVec2::new(x + centers[i].0, centers[i].1);
+        let exact: [_; 3] = core::array::from_fn(|i| RigidMotion::rotation(rates[i], at(i, 0.0)));
+        let far: [_; 3] = core::array::from_fn(|i| RigidMotion::rotation(rates[i] as f32, at(i, 4096.0).as_vec2()));
+        let (exact, far) = (ChainMotion::new(&exact).displacement(1.0), ChainMotion::new(&far).displacement(1.0));
+        assert_eq!(far.pivot, Vec2::new(4096.0, 0.0) + exact.pivot.as_vec2());
+        let off = (far.shift.as_dvec2() - exact.shift).length();
+        assert!(off <= f64::from(far.shift_error), "{off} {}", far.shift_error);
+        assert!(far.shift_error < 1e-5, "{}", far.shift_error);
+    }
 
     /// A point at the distance `r` from an axis that it turns about at the rate `w` is as fast as `w·r`, and its
     /// acceleration and jerk are `w²·r` and `w³·r`; a joint that slides before adds its rate.
