@@ -112,6 +112,12 @@ impl<'l, V: Vector> LinkMotion<'l, V> {
         Self { route, edge, start, bounds: edge.bounds(route), last }
     }
 
+    /// With what is known already of how the last joint's frame moves as the motion begins.
+    pub(super) fn with_known(self, moving: Moving<V>) -> Self {
+        self.last.set((V::Scalar::ZERO, moving, moving.frame.then(&self.route.tail)));
+        self
+    }
+
     /// How the last joint's frame moves at a time, and where that of the link is.
     pub(super) fn at(&self, time: V::Scalar) -> (Moving<V>, LinkFrame<V>) {
         let (known, moving, frame) = self.last.get();

@@ -63,8 +63,8 @@ pub struct Linkage<S: SupportMap> {
 /// What of a linkage does not depend on its shapes.
 #[derive(Clone, Debug)]
 pub(super) struct Skeleton<V: Vector> {
-    /// How many joints move.
-    values: usize,
+    /// The joints that move, each after the one that carries it, which is named beside it.
+    pub(super) stages: Vec<(Option<usize>, JointStage<V>)>,
     pub(super) links: Vec<LinkBalls<V>>,
     /// Each link as the world sees it, and after them the pairs that are asked about.
     pub(super) views: Vec<LinkView<V>>,
@@ -73,6 +73,8 @@ pub(super) struct Skeleton<V: Vector> {
 /// A ball around each body of a link, in its own frame, and one around all of them.
 #[derive(Clone, Debug)]
 pub(super) struct LinkBalls<V: Vector> {
+    /// The last joint that moves it.
+    pub(super) stage: Option<usize>,
     pub(super) each: Vec<BoundingSphere<V>>,
     pub(super) all: BoundingSphere<V>,
 }
@@ -112,8 +114,7 @@ impl<S: SupportMap> Linkage<S> {
             places.push((Some(stages.len()), LinkFrame::WORLD));
             stages.push((before, stage));
         }
-        let mut skeleton = Skeleton { values: stages.len(), links: Vec::new(), views: Vec::new() };
-        let mut all = Vec::new();
+        let (mut balls, mut views, mut all) = (Vec::new(), Vec::new(), Vec::new());
         for (link, Link { joint, bodies }) in links.into_iter().enumerate() {
             let (stage, tail) = match joint {
                 None => (None, LinkFrame::WORLD),
@@ -127,11 +128,11 @@ impl<S: SupportMap> Linkage<S> {
             if let Some(body) = each.iter().position(|ball| !reach(ball).is_finite()) {
                 return Err(LinkageError::BodyNotFinite { link, body });
             }
-            skeleton.views.push(LinkView { link, base: None, route: Route::new(way, tail) });
-            skeleton.links.push(LinkBalls { all: ball_around(each.iter().copied()), each });
+            views.push(LinkView { link, base: None, route: Route::new(way, tail) });
+            balls.push(LinkBalls { stage, all: ball_around(each.iter().copied()), each });
             all.push(bodies);
         }
-        Ok(Self { skeleton, bodies: all })
+        Ok(Self { skeleton: Skeleton { stages, links: balls, views }, bodies: all })
     }
 
     /// The same linkage, in which the links of these pairs are asked about one another, by their indices: those that
@@ -151,7 +152,7 @@ impl<S: SupportMap> Linkage<S> {
     /// The number of joints that move, which is that of the values of a waypoint.
     #[must_use]
     pub fn values(&self) -> usize {
-        self.skeleton.values
+        self.skeleton.stages.len()
     }
 
     /// The number of links.

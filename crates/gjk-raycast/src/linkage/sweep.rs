@@ -1,7 +1,7 @@
 //! Which bodies may come near one another along an edge, and when.
 //!
-//! The edge is halved again and again. At the middle of each part the joints of each link that is not known to be free
-//! are placed. A ball around the link has moved from there by no more than its velocity `v` and its acceleration `a` there tell, and a bound
+//! The edge is halved again and again. At the middle of each part the joints are placed once, for all links that the
+//! world sees. A ball around a link has moved from there by no more than its velocity `v` and its acceleration `a` there tell, and a bound
 //! on how fast that changes: by `v·h + a·h²/2 + j·h³/6` within the time `h`. If nothing is within that reach, the link is
 //! free for the whole part; else, once the reach is not much more than the ball itself, its bodies and what is near them
 //! are left to be cast.
@@ -13,6 +13,7 @@ use convex_support::{Aabb, BoundingSphere, BoxDistance, Bvh, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::frame::epsilons;
+use super::joint::Moving;
 use super::link_motion::{LinkMotion, PathEdge};
 use super::linkage::{LinkView, Skeleton};
 use crate::RayCastError;
@@ -43,6 +44,8 @@ pub(super) struct Near<S> {
 #[derive(Clone, Debug, Default)]
 pub struct PathWorkspace<V: Vector> {
     pub(super) half_spaces: Vec<(usize, Plane<V>)>,
+    /// How the joints move at the middle of a part, as the world sees it.
+    moving: Vec<Moving<V>>,
     /// The views that are not known to be free in the parts that are being looked at.
     views: Vec<usize>,
     /// What is near a link.
@@ -111,6 +114,7 @@ impl<V: Vector> Sweep<'_, V> {
         }
         let half = (to - from) * V::Scalar::from_f64(0.5);
         let is_last = depth == MAX_DEPTH || half == V::Scalar::ZERO || self.target == V::Scalar::infinity();
+        self.place(from + half);
         self.parts += 1;
         let rest = self.space.views.len();
         for at in views {
@@ -139,12 +143,25 @@ impl<V: Vector> Sweep<'_, V> {
         Ok(())
     }
 
+    /// Places the joints at a time.
+    fn place(&mut self, time: V::Scalar) {
+        self.space.moving.clear();
+        for (before, stage) in &self.skeleton.stages {
+            let carrier = before.map_or(Moving::WORLD, |before| self.space.moving[before]);
+            self.space.moving.push(carrier.beyond(stage, self.edge.at(stage.column, time)));
+        }
+    }
+
     /// Looks for what is near a link, body by body. If something is, and the link moves too far, the part is to be halved
     /// instead.
     fn is_coarse(&mut self, index: usize, [from, to]: [V::Scalar; 2], half: V::Scalar, is_last: bool) -> bool {
         let LinkView { link, base, ref route } = self.skeleton.views[index];
         let (link, base) = (&self.skeleton.links[link], base.map(|base| &self.skeleton.links[base]));
         let motion = LinkMotion::new(route, self.edge, from + half);
+        let motion = match base {
+            Some(_) => motion,
+            None => motion.with_known(link.stage.map_or(Moving::WORLD, |stage| self.space.moving[stage])),
+        };
         let is_near = |reach: &SweptBall<V>, &BoundingSphere { center, radius }: &BoundingSphere<V>| {
             reach.meets_box(&Aabb { min: center, max: center }, radius + self.target)
         };
