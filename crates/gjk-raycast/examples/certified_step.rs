@@ -67,12 +67,12 @@ impl Filter<'_> {
         for (link, near) in self.near.iter().enumerate() {
             let room = |near: &BodyDistance<DVec3>| near.distance.lower - MARGIN;
             // No point goes farther than that, whatever the joints do in between.
-            let way = self.arm.way(link, &self.asked_at, wish)?;
+            let way = self.arm.way(link, &self.asked_at, wish, None)?;
             for obstacle in near.iter().filter(|obstacle| room(obstacle) <= way) {
                 // Nor nearer to this one; of those that were not asked for, nothing else is known.
                 let towards = -obstacle.distance.normal.ok_or("it is apart")?;
                 let is_last = obstacle.body == near[NEAREST - 1].body;
-                if is_last || room(obstacle) <= self.arm.way_along(link, &self.asked_at, wish, towards)? {
+                if is_last || room(obstacle) <= self.arm.way(link, &self.asked_at, wish, Some(towards))? {
                     return Ok(false);
                 }
             }

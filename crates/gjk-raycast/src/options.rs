@@ -101,6 +101,8 @@ macro_rules! new_by_default {
     )*};
 }
 
+pub(crate) use new_by_default;
+
 new_by_default!(DistanceOptions, SignedDistanceOptions, IntersectOptions, RayCastOptions, LinearCastOptions);
 
 /// Options of [`distance`](crate::distance).

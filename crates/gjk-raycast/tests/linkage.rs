@@ -492,7 +492,7 @@ fn a_path_is_asked_until_a_time() -> Result<(), Box<dyn std::error::Error>> {
     let (robot, scene) = (arm(), Scene::new([ball_at(1.0, 1.0)])?);
     let ways = [[-1.0, 0.0], [0.0, 0.0], [2.0, 0.0]];
     let ask =
-        |until: f64| robot.path(&ways, &scene, LinkageOptions::new().with_until(until), &mut PathWorkspace::new());
+        |until: f64| robot.path(&ways, &scene, LinkageOptions::new().with_max_time(until), &mut PathWorkspace::new());
     let contact = ask(f64::INFINITY)?.contact().ok_or("it turns past the ball")?;
     assert_eq!(contact.edge, 1);
     let at = 1.0 + contact.time;
@@ -549,9 +549,9 @@ fn a_link_goes_no_farther_than_its_way() -> Result<(), Box<dyn std::error::Error
         let from = [0, 1].map(|_| 3.0 * random(&mut seed));
         let to = from.map(|value| value + size * (2.0 * random(&mut seed) - 1.0));
         for link in 0..2 {
-            let way = robot.way(link, &from, &to)?;
+            let way = robot.way(link, &from, &to, None)?;
             let n = DVec2::from_angle(6.3 * random(&mut seed));
-            let along = robot.way_along(link, &from, &to, n)?;
+            let along = robot.way(link, &from, &to, Some(n))?;
             assert!(along <= way + 1e-12, "a direction is one of all: {along} of {way}");
             let [before, after] = [robot.placed(link, 0, &from)?, robot.placed(link, 0, &to)?];
             for point in [DVec2::new(-0.05, 0.0), DVec2::new(1.05, 0.0)] {
@@ -565,7 +565,7 @@ fn a_link_goes_no_farther_than_its_way() -> Result<(), Box<dyn std::error::Error
     }
     assert!(most > 0.9, "a short way is known well: {most}");
     let unknown = LinkageError::NoSuchBody { link: 2, body: 0 };
-    assert_eq!(robot.way(2, &[0.0; 2], &[0.0; 2]), Err(unknown), "there are two links");
+    assert_eq!(robot.way(2, &[0.0; 2], &[0.0; 2], None), Err(unknown), "there are two links");
     assert_eq!(robot.placed(2, 0, &[0.0; 2]).err(), Some(unknown), "there are two links");
     Ok(())
 }

@@ -1,8 +1,11 @@
-//! What a linkage is made of.
+//! What a linkage is made of, and how a frame at the end of some joints moves, at one moment.
 
-use convex_support::{SupportMap, Vector};
+use convex_support::numerics::elementary::sin_cos;
+use convex_support::{Matrix as _, Scalar, SupportMap, Vector};
+use num_traits::Float as _;
 
-use crate::Pose;
+use super::frame::{LinkFrame, epsilons};
+use crate::{Pose, axial};
 
 /// A joint of a [`Linkage`](crate::Linkage): where its frame is in that of its parent, and how it moves from there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,4 +37,166 @@ pub struct Link<S: SupportMap> {
     pub joint: Option<usize>,
     /// The bodies, in the frame of the joint. There may be none.
     pub bodies: alloc::vec::Vec<S>,
+}
+
+impl<V: Vector> Joint<V> {
+    /// A joint that turns about an axis, at a pose in its parent's frame.
+    #[must_use]
+    pub fn revolute(parent: Option<usize>, pose: Pose<V>, axis: V::AngularVelocity) -> Self {
+        Self { parent, pose, kind: JointKind::Revolute(axis) }
+    }
+
+    /// A joint that slides along an axis.
+    #[must_use]
+    pub fn prismatic(parent: Option<usize>, pose: Pose<V>, axis: V) -> Self {
+        Self { parent, pose, kind: JointKind::Prismatic(axis) }
+    }
+
+    /// A joint that does not move.
+    #[must_use]
+    pub fn fixed(parent: Option<usize>, pose: Pose<V>) -> Self {
+        Self { parent, pose, kind: JointKind::Fixed }
+    }
+}
+
+/// What a rotation about an axis is wrong by as an operator, in ε, beside what its angle is. The unit axis is wrong by
+/// 1.5, which counts twice. The term of the sine loses 3 and that of `1 − cos ≤ 2` twice 6; sine and cosine themselves 3,
+/// and the sum of the terms 5. The product with the rotation before it loses 4.5.
+const OF_TURN: f64 = 31.0;
+
+/// The way from one moving joint to the next, and how that moves: `x ↦ fixed·motion(value)·x`.
+#[derive(Clone, Debug)]
+pub(super) struct JointStage<V: Vector> {
+    /// Its frame in that of the moving joint before it, at the value 0.
+    pub(super) fixed: LinkFrame<V>,
+    /// How far its origin is from that of the joint before it.
+    pub(super) arm: V::Scalar,
+    /// How far that is from the axis of the joint before it.
+    pub(super) off_axis: V::Scalar,
+    /// A unit vector in its own frame, which it turns about or slides along.
+    pub(super) axis: V,
+    /// Of a joint that turns: with `A` the matrix of the product with the axis, the rotation is `1 + sin·A + (1 − cos)·A²`
+    /// (Rodrigues), and these are its terms as the fixed rotation turns them.
+    turn: Option<[V::Matrix; 2]>,
+    /// The place of its value among the joint values.
+    pub(super) column: usize,
+}
+
+/// A value of a joint at a moment, and how fast it changes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Value<S> {
+    pub(super) value: S,
+    pub(super) rate: S,
+    /// What rounding has done to the value.
+    pub(super) error: S,
+}
+
+/// A frame that moves, with the first two derivatives of its place by time, where all joint values change at constant
+/// rates. Only the frame has a bound on its error; derivatives are as they are computed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moving<V: Vector> {
+    pub(super) frame: LinkFrame<V>,
+    /// The angular velocity, as of [`axial`], and its derivative.
+    pub(super) spin: V,
+    pub(super) spin_rate: V,
+    /// The velocity and the acceleration of the frame's origin.
+    velocity: V,
+    acceleration: V,
+}
+
+impl<V: Vector> JointStage<V> {
+    /// The stage of a joint that is at `fixed`; `None` for one that does not move, or whose axis is none.
+    pub(super) fn new(fixed: LinkFrame<V>, kind: JointKind<V>, column: usize) -> Option<Self> {
+        match kind {
+            JointKind::Fixed => None,
+            JointKind::Revolute(axis) => Some(Self::about(fixed, axial::vector::<V>(axis).unit()?, true, column)),
+            JointKind::Prismatic(axis) => Some(Self::about(fixed, axis.unit()?, false, column)),
+        }
+    }
+
+    fn about(fixed: LinkFrame<V>, axis: V, turns: bool, column: usize) -> Self {
+        let product = axial::matrix(axis);
+        let sine = fixed.rotation * product;
+        let turn = turns.then(|| [sine, sine * product]);
+        Self { arm: fixed.translation.norm(), off_axis: V::Scalar::ZERO, fixed, axis, turn, column }
+    }
+
+    /// The stage that moves as this one does, from another frame on; or that takes it back, with the sign -1.
+    pub(super) fn from(&self, fixed: LinkFrame<V>, sign: V::Scalar) -> Self {
+        Self::about(fixed, self.axis * sign, self.turns(), self.column)
+    }
+
+    pub(super) fn turns(&self) -> bool {
+        self.turn.is_some()
+    }
+
+    /// Its axis and its origin, by its frame as it has moved.
+    pub(super) fn placed(&self, frame: &LinkFrame<V>) -> [V; 2] {
+        let axis = if self.turns() { axial::turned(&frame.rotation, self.axis) } else { frame.rotation * self.axis };
+        [axis, frame.translation]
+    }
+
+    /// How fast a point goes along `n`, as its value changes, where its axis and origin are these.
+    pub(super) fn rise(&self, [axis, origin]: [V; 2], n: V, point: V) -> V::Scalar {
+        n.dot(if self.turns() { axial::turning(axis, point - origin) } else { axis })
+    }
+}
+
+impl<V: Vector> Moving<V> {
+    /// The world, at rest.
+    pub(super) const WORLD: Self =
+        Self { frame: LinkFrame::WORLD, spin: V::ZERO, spin_rate: V::ZERO, velocity: V::ZERO, acceleration: V::ZERO };
+
+    /// The velocity of the point of the frame that is at `point`.
+    #[inline]
+    pub(super) fn velocity_at(&self, point: V) -> V {
+        self.velocity + axial::turning(self.spin, point - self.frame.translation)
+    }
+
+    /// The acceleration of that point.
+    #[inline]
+    pub(super) fn acceleration_at(&self, point: V) -> V {
+        let arm = point - self.frame.translation;
+        let turning = axial::turning(self.spin, axial::turning(self.spin, arm));
+        self.acceleration + axial::turning(self.spin_rate, arm) + turning
+    }
+
+    /// The frame beyond a stage.
+    ///
+    /// Its origin is a point of this frame, or slides along it. It has the angular velocity `ω + w` with the joint's own
+    /// `w`, which this frame turns, so that its derivative is `ω′ + ω × w`; and what slides at `d` has the acceleration
+    /// `2ω × d` more than a point of this frame (Coriolis).
+    #[inline]
+    pub(super) fn beyond(&self, stage: &JointStage<V>, Value { value, rate, error }: Value<V::Scalar>) -> Self {
+        let &JointStage { ref fixed, arm, axis, ref turn, .. } = stage;
+        if let Some([sine, versine]) = turn {
+            let (sin, cos) = sin_cos(value);
+            let rest = V::Scalar::ONE - cos;
+            let turned = |j| fixed.rotation.col(j) + sine.col(j) * sin + versine.col(j) * rest;
+            let rotation = self.frame.rotation * V::Matrix::from_cols_fn(turned);
+            let moved = self.frame.moved(fixed.translation, arm, fixed.shift_error);
+            let turn_error = moved.turn_error + fixed.turn_error + error + epsilons(OF_TURN);
+            let spin = axial::turned(&rotation, axis) * rate;
+            return Self {
+                velocity: self.velocity_at(moved.translation),
+                acceleration: self.acceleration_at(moved.translation),
+                spin: self.spin + spin,
+                spin_rate: self.spin_rate + axial::product(self.spin, spin),
+                frame: LinkFrame { rotation, turn_error, ..moved },
+            };
+        }
+        let (along, length) = (fixed.rotation * axis, value.abs());
+        // The axis is turned, and wrong by 1.5ε before; the product and the sum are rounded.
+        let lost = (fixed.turn_error + epsilons(6.0)) * (length + arm);
+        let moved = self.frame.moved(fixed.translation + along * value, arm + length, fixed.shift_error + error + lost);
+        let turn_error = moved.turn_error + fixed.turn_error + epsilons(4.5);
+        let slide = self.frame.rotation * along * rate;
+        let coriolis = axial::turning(self.spin, slide);
+        Self {
+            velocity: self.velocity_at(moved.translation) + slide,
+            acceleration: self.acceleration_at(moved.translation) + coriolis + coriolis,
+            frame: LinkFrame { rotation: self.frame.rotation * fixed.rotation, turn_error, ..moved },
+            ..*self
+        }
+    }
 }

@@ -27,12 +27,11 @@ use smallvec::SmallVec;
 
 use super::error::LinkageError;
 use super::frame::epsilons;
+use super::joint::{JointStage, Moving, Value};
+use super::link_motion::Route;
 use super::linkage::Linkage;
-use super::moving::{Moving, Value};
 use super::path::LinkageOptions;
-use super::proof::FreeBox;
-use super::route::Route;
-use super::stage::JointStage;
+use super::result::FreeBox;
 use crate::axial;
 use crate::{SignedDistanceOptions, signed_distance};
 
@@ -133,7 +132,6 @@ impl<S: SupportMap> Linkage<S> {
         if let Some(value) = joint_box.iter().position(|[low, high]| low > high) {
             return Err(LinkageError::Interval { value });
         }
-        let search = BoxSearch::new(&route, joint_box, target);
         let bodies = pair.map(|link| &self.bodies[link]);
         let pairs = (0..bodies[0].len()).flat_map(|i| (0..bodies[1].len()).map(move |k| [i, k]));
         let whole = |bodies| BoxPart { bodies, joint_box: joint_box.to_vec(), share: ScalarOf::<S>::ONE };
@@ -145,7 +143,7 @@ impl<S: SupportMap> Linkage<S> {
             for part in next.drain(..) {
                 boxes += 1;
                 let BoxPart { bodies: [i, k], ref joint_box, .. } = part;
-                match search.look([&bodies[0][i], &bodies[1][k]], joint_box) {
+                match look(&route, target, [&bodies[0][i], &bodies[1][k]], joint_box) {
                     BoxState::Free { normal } => observer(FreeBox { bodies: part.bodies, joint_box, normal }),
                     BoxState::Meets => {
                         let values = joint_box.iter().map(|&interval| middle(interval)).collect();
@@ -197,85 +195,78 @@ enum BoxState<V: Vector> {
     },
 }
 
-/// The way of one link seen from another, and bounds that hold in the whole box.
-struct BoxSearch<'s, V: Vector> {
-    route: &'s Route<V>,
+/// Looks at two bodies in a part of the box, where a route leads from the second's link to the first's.
+fn look<V: Vector, S: SupportMap<Vector = V>>(
+    route: &Route<V>,
     target: V::Scalar,
-    /// How far each joint slides at most.
-    slides: Vec<V::Scalar>,
-}
-
-impl<'s, V: Vector> BoxSearch<'s, V> {
-    fn new(route: &'s Route<V>, joint_box: &[[V::Scalar; 2]], target: V::Scalar) -> Self {
-        let slides = joint_box.iter().map(|[low, high]| low.abs().max(high.abs())).collect();
-        Self { route, target, slides }
+    [a, b]: [&S; 2],
+    joint_box: &[[V::Scalar; 2]],
+) -> BoxState<V> {
+    let Route { stages, tail } = route;
+    let (zero, one, two) = (V::Scalar::ZERO, V::Scalar::ONE, V::Scalar::from_f64(2.0));
+    let half = |column: usize| {
+        let [low, high] = joint_box[column];
+        let at = middle([low, high]);
+        raised((high - at).max(at - low))
+    };
+    let Core { origin, extent, radius, .. } = a.core();
+    let reach = raised(tail.of(origin).norm() + extent + radius + tail.error_of(origin.norm() + extent));
+    let sizes = [a.core(), b.core()].map(|core| core.origin.norm() + core.extent + core.radius);
+    // The axis of each joint, and its origin.
+    let (mut moving, mut axes) = (Moving::WORLD, SmallVec::<[[V; 2]; 8]>::new());
+    for stage in stages {
+        moving = moving.beyond(stage, Value { value: middle(joint_box[stage.column]), rate: zero, error: zero });
+        axes.push(stage.placed(&moving.frame));
     }
-
-    fn look<S: SupportMap<Vector = V>>(&self, [a, b]: [&S; 2], joint_box: &[[V::Scalar; 2]]) -> BoxState<V> {
-        let (zero, one, two) = (V::Scalar::ZERO, V::Scalar::ONE, V::Scalar::from_f64(2.0));
-        let Route { stages, tail, .. } = self.route;
-        let half = |column: usize| {
-            let [low, high] = joint_box[column];
-            let at = middle([low, high]);
-            raised((high - at).max(at - low))
-        };
-        let Core { origin, extent, radius, .. } = a.core();
-        let reach = raised(tail.of(origin).norm() + extent + radius + tail.error_of(origin.norm() + extent));
-        let sizes = [a.core(), b.core()].map(|core| core.origin.norm() + core.extent + core.radius);
-        // The axis of each joint, and its origin.
-        let (mut moving, mut axes) = (Moving::WORLD, SmallVec::<[[V; 2]; 8]>::new());
-        for stage in stages {
-            moving = moving.beyond(stage, Value { value: middle(joint_box[stage.column]), rate: zero, error: zero });
-            axes.push(stage.placed(&moving.frame));
-        }
-        let frame = moving.frame.then(tail);
-        let Ok(a) = Posed::from_matrix(a, frame.rotation, frame.translation) else {
-            // Numbers as large as that are not known any better at other joints.
-            return BoxState::Open { after: zero, column: stages.first().map(|stage| stage.column) };
-        };
-        let answer = signed_distance(&a, b, SignedDistanceOptions::new());
-        // The matrix was made orthonormal, which moves it by no more than it was wrong.
-        let error = raised(frame.error_of(reach) * two);
-        if answer.upper + error <= self.target {
-            return BoxState::Meets;
-        }
-        let n = answer.normal;
-        let (mut changes, mut level) = (SmallVec::<[(V, V::Scalar); 8]>::new(), -support_value(b, n));
-        let (mut turned, mut size) = (one, reach + sizes[0] + sizes[1] + frame.translation.norm());
-        for (stage, &[axis, origin]) in stages.iter().zip(&axes) {
-            let half = half(stage.column);
-            if stage.turns() {
-                let change = axial::turning(-axis, n) * half;
-                changes.push((change, change.dot(origin)));
-                turned += half;
-                size += origin.norm();
-            } else {
-                level -= (n.dot(axis) * half).abs();
-            }
-        }
-        level += least_height(&|direction: V| -support_value(&a, -direction), n, &changes);
-        let bent_by = |half: &dyn Fn(usize) -> V::Scalar| {
-            self.route.bounds(half, |column| self.slides[column]).acceleration.of(reach) / two
-        };
-        let bent = bent_by(&half);
-        let shapes = a.core().error + b.core().error;
-        // Directions are longer than one by what the joints turn.
-        let lost = (error + shapes + epsilons::<V::Scalar>(64.0) * size) * turned + bent * epsilons(64.0);
-        if level - bent - raised(lost) > self.target {
-            return BoxState::Free { normal: n };
-        }
-        // What halving takes off the way of the nearest point at first, and off what bends it.
-        let gain = |(stage, axis): (&JointStage<V>, &[V; 2])| {
-            let halved = |column| half(column) / if column == stage.column { two } else { one };
-            let first = half(stage.column) * stage.rise(*axis, n, answer.point_a).abs() / two;
-            (first + bent - bent_by(&halved), stage.column)
-        };
-        let by_gain = |a: &(V::Scalar, usize), b: &(V::Scalar, usize)| a.0.partial_cmp(&b.0).unwrap_or(Ordering::Equal);
-        let best = stages.iter().zip(&axes).map(gain).max_by(by_gain).filter(|(gain, _)| *gain > zero);
-        let (gap, sinks) = (answer.signed_distance - self.target, answer.signed_distance - (level - bent));
-        let part = gap / sinks;
-        BoxState::Open { after: gap * part * part * part, column: best.map(|(_, column)| column) }
+    let frame = moving.frame.then(tail);
+    let Ok(a) = Posed::from_matrix(a, frame.rotation, frame.translation) else {
+        // Numbers as large as that are not known any better at other joints.
+        return BoxState::Open { after: zero, column: stages.first().map(|stage| stage.column) };
+    };
+    let answer = signed_distance(&a, b, SignedDistanceOptions::new());
+    // The matrix was made orthonormal, which moves it by no more than it was wrong.
+    let error = raised(frame.error_of(reach) * two);
+    if answer.upper + error <= target {
+        return BoxState::Meets;
     }
+    let n = answer.normal;
+    let (mut changes, mut level) = (SmallVec::<[(V, V::Scalar); 8]>::new(), -support_value(b, n));
+    let (mut turned, mut size) = (one, reach + sizes[0] + sizes[1] + frame.translation.norm());
+    for (stage, &[axis, origin]) in stages.iter().zip(&axes) {
+        let half = half(stage.column);
+        if stage.turns() {
+            let change = axial::turning(-axis, n) * half;
+            changes.push((change, change.dot(origin)));
+            turned += half;
+            size += origin.norm();
+        } else {
+            level -= (n.dot(axis) * half).abs();
+        }
+    }
+    level += least_height(&|direction: V| -support_value(&a, -direction), n, &changes);
+    let slide = |column: usize| {
+        let [low, high] = joint_box[column];
+        low.abs().max(high.abs())
+    };
+    let bent_by = |half: &dyn Fn(usize) -> V::Scalar| route.bounds(half, slide).acceleration.of(reach) / two;
+    let bent = bent_by(&half);
+    let shapes = a.core().error + b.core().error;
+    // Directions are longer than one by what the joints turn.
+    let lost = (error + shapes + epsilons::<V::Scalar>(64.0) * size) * turned + bent * epsilons(64.0);
+    if level - bent - raised(lost) > target {
+        return BoxState::Free { normal: n };
+    }
+    // What halving takes off the way of the nearest point at first, and off what bends it.
+    let gain = |(stage, axis): (&JointStage<V>, &[V; 2])| {
+        let halved = |column| half(column) / if column == stage.column { two } else { one };
+        let first = half(stage.column) * stage.rise(*axis, n, answer.point_a).abs() / two;
+        (first + bent - bent_by(&halved), stage.column)
+    };
+    let by_gain = |a: &(V::Scalar, usize), b: &(V::Scalar, usize)| a.0.partial_cmp(&b.0).unwrap_or(Ordering::Equal);
+    let best = stages.iter().zip(&axes).map(gain).max_by(by_gain).filter(|(gain, _)| *gain > zero);
+    let (gap, sinks) = (answer.signed_distance - target, answer.signed_distance - (level - bent));
+    let part = gap / sinks;
+    BoxState::Open { after: gap * part * part * part, column: best.map(|(_, column)| column) }
 }
 
 /// The least of `n·x − Σ |change·x − offset|` over the points of a body, from below, by how far it is along a direction

@@ -1,5 +1,6 @@
-//! The motion of a link along an edge of a path.
+//! The way from the world, or from another link, to a link, and the motion of the link along an edge of a path.
 
+use alloc::vec::Vec;
 use core::cell::Cell;
 
 use convex_support::numerics::bound::raised;
@@ -7,10 +8,66 @@ use convex_support::{BoundingSphere, Matrix as _, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::frame::{LinkFrame, epsilons};
-use super::moving::{Moving, Value};
-use super::route::Route;
+use super::joint::{JointStage, Moving, Value};
 use crate::motion::Bounds;
 use crate::{Displacement, MovingBall, Trajectory, TurningPlane};
+
+/// The moving joints on the way from one frame to a link, and the link's frame beyond the last of them.
+#[derive(Clone, Debug)]
+pub(super) struct Route<V: Vector> {
+    pub(super) stages: Vec<JointStage<V>>,
+    pub(super) tail: LinkFrame<V>,
+}
+
+impl<V: Vector> Route<V> {
+    pub(super) fn new(mut stages: Vec<JointStage<V>>, tail: LinkFrame<V>) -> Self {
+        for k in 1..stages.len() {
+            let (axis, arm) = (stages[k - 1].axis, stages[k].fixed.translation);
+            stages[k].off_axis = if V::DIM == 3 { arm - axis * axis.dot(arm) } else { arm }.norm();
+        }
+        Self { stages, tail }
+    }
+
+    /// The bounds for points that it carries, if its joints change at these rates, and slide no farther than `slides`.
+    pub(super) fn bounds(
+        &self,
+        rates: impl Fn(usize) -> V::Scalar,
+        slides: impl Fn(usize) -> V::Scalar,
+    ) -> Bounds<V::Scalar> {
+        let (mut bounds, mut next) = (Bounds::REST, [V::Scalar::ZERO; 2]);
+        for stage in self.stages.iter().rev() {
+            if stage.turns() {
+                bounds.turn(rates(stage.column), next[1]);
+            } else {
+                bounds.slide(rates(stage.column), slides(stage.column));
+            }
+            bounds.lengthen(next[0]);
+            next = [stage.arm, stage.off_axis];
+        }
+        bounds
+    }
+
+    /// The route to a frame from another, each given by its way from the world: back along the one to where they part,
+    /// and on along the other.
+    ///
+    /// With `F` for what is fixed and `M` for what moves, `(F₁M₁…FₙMₙT)⁻¹` is `T⁻¹·Mₙ⁻¹·Fₙ⁻¹·…·M₁⁻¹·F₁⁻¹`: the stages
+    /// of the way back have the fixed parts of the stages after them.
+    pub(super) fn between(from: &Self, to: &Self) -> Self {
+        let shared = from.stages.iter().zip(&to.stages).take_while(|(a, b)| a.column == b.column).count();
+        let mut fixed = from.tail.inverse();
+        let mut stages = Vec::with_capacity(from.stages.len() + to.stages.len() - 2 * shared);
+        for stage in from.stages[shared..].iter().rev() {
+            stages.push(stage.from(fixed, -V::Scalar::ONE));
+            fixed = stage.fixed.inverse();
+        }
+        for (i, stage) in to.stages[shared..].iter().enumerate() {
+            let before = if i == 0 { fixed.then(&stage.fixed) } else { stage.fixed };
+            stages.push(stage.from(before, V::Scalar::ONE));
+        }
+        let leads_on = to.stages.len() > shared;
+        Self::new(stages, if leads_on { to.tail } else { fixed.then(&to.tail) })
+    }
+}
 
 /// A straight edge in joint space, which takes one unit of time.
 #[derive(Clone, Copy, Debug)]
@@ -44,19 +101,21 @@ pub(super) struct LinkMotion<'l, V: Vector> {
     route: &'l Route<V>,
     edge: PathEdge<'l, V::Scalar>,
     start: V::Scalar,
-    bounds: Bounds<V::Scalar>,
+    pub(super) bounds: Bounds<V::Scalar>,
     /// What was last computed, which is mostly asked for several times.
     last: Cell<(V::Scalar, Moving<V>, LinkFrame<V>)>,
 }
 
 impl<'l, V: Vector> LinkMotion<'l, V> {
-    pub(super) fn new(
-        route: &'l Route<V>,
-        edge: PathEdge<'l, V::Scalar>,
-        start: V::Scalar,
-        bounds: Bounds<V::Scalar>,
-    ) -> Self {
-        Self { route, edge, start, bounds, last: Cell::new((V::Scalar::nan(), Moving::WORLD, LinkFrame::WORLD)) }
+    pub(super) fn new(route: &'l Route<V>, edge: PathEdge<'l, V::Scalar>, start: V::Scalar) -> Self {
+        let last = Cell::new((V::Scalar::nan(), Moving::WORLD, LinkFrame::WORLD));
+        Self { route, edge, start, bounds: edge.bounds(route), last }
+    }
+
+    /// With what is known already of how the last joint's frame moves as the motion begins.
+    pub(super) fn with_known(self, moving: Moving<V>) -> Self {
+        self.last.set((V::Scalar::ZERO, moving, moving.frame.then(&self.route.tail)));
+        self
     }
 
     /// How the last joint's frame moves at a time, and where that of the link is.
@@ -74,7 +133,7 @@ impl<'l, V: Vector> LinkMotion<'l, V> {
     }
 
     /// How far a point of the link is from the origin of its last joint.
-    fn distance(&self, point: V) -> V::Scalar {
+    pub(super) fn distance(&self, point: V) -> V::Scalar {
         self.route.tail.of(point).norm()
     }
 }
@@ -108,22 +167,18 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
     fn acceleration_along(
         &self,
         ball: BoundingSphere<V>,
-        TurningPlane { from, to }: TurningPlane<V>,
-        [start, end]: [V::Scalar; 2],
+        plane @ TurningPlane { from, to }: TurningPlane<V>,
+        interval @ [start, end]: [V::Scalar; 2],
     ) -> V::Scalar {
-        let (bounds, two) = (&self.bounds, V::Scalar::from_f64(2.0));
-        let distance = self.distance(ball.center);
-        let (duration, longest) = (end - start, from.norm().max(to.norm()));
-        let rate = if from == to { V::ZERO } else { (to - from) / duration };
-        let fast = rate.norm();
-        let reach = distance + ball.radius;
-        let always = two * fast * bounds.speed.of(reach) + longest * bounds.acceleration.of(reach);
+        let (bounds, distance, duration) = (&self.bounds, self.distance(ball.center), end - start);
+        let always = bounds.along(plane, interval, distance + ball.radius);
         // Not where it cannot be less, or the interval has no end.
         if !(bounds.spin * duration < V::Scalar::ONE) {
             return always;
         }
         let (moving, frame) = self.at(end);
-        let (center, w) = (frame.of(ball.center), bounds.spin);
+        let (center, w, longest) = (frame.of(ball.center), bounds.spin, from.norm().max(to.norm()));
+        let rate = if from == to { V::ZERO } else { (to - from) / duration };
         let turned = w * w * duration;
         let spin = moving.spin.norm() + turned;
         let bending = (moving.spin_rate.norm() + w * turned + spin * spin).min(w * w);
@@ -131,9 +186,9 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
         let along = from.dot(acceleration).max(to.dot(acceleration))
             + longest * (bounds.jerk.of(distance) * duration + ball.radius * bending);
         let turning = rate.dot(moving.velocity_at(center))
-            + fast * (bounds.acceleration.of(distance) * duration + ball.radius * w);
+            + rate.norm() * (bounds.acceleration.of(distance) * duration + ball.radius * w);
         // Where the frame is, and what the derivatives lose, is a small part of what always holds.
-        let near = along + two * turning + always * (frame.turn_error + epsilons(64.0));
+        let near = along + V::Scalar::from_f64(2.0) * turning + always * (frame.turn_error + epsilons(64.0));
         // NaN is no bound.
         if near < always { near } else { always }
     }

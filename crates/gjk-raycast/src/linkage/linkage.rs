@@ -10,13 +10,10 @@ use num_traits::Float;
 
 use super::error::LinkageError;
 use super::frame::{LinkFrame, epsilons};
-use super::joint::{Joint, JointKind, Link};
-use super::link_motion::{LinkMotion, PathEdge};
-use super::route::Route;
-use super::stage::JointStage;
-use crate::Pose;
+use super::joint::{Joint, JointKind, JointStage, Link, Moving};
+use super::link_motion::{LinkMotion, PathEdge, Route};
+use super::result::{Met, PathContact};
 use crate::axial;
-use crate::motion::Bounds;
 
 /// A robot: links, each of some bodies, that joints carry, in a tree.
 ///
@@ -68,27 +65,18 @@ pub struct Linkage<S: SupportMap> {
 pub(super) struct Skeleton<V: Vector> {
     /// The joints that move, each after the one that carries it, which is named beside it.
     pub(super) stages: Vec<(Option<usize>, JointStage<V>)>,
-    pub(super) links: Vec<Carried<V>>,
+    pub(super) links: Vec<LinkBalls<V>>,
     /// Each link as the world sees it, and after them the pairs that are asked about.
     pub(super) views: Vec<LinkView<V>>,
 }
 
-/// What a joint carries.
+/// A ball around each body of a link, in its own frame, and one around all of them.
 #[derive(Clone, Debug)]
-pub(super) struct Carried<V: Vector> {
+pub(super) struct LinkBalls<V: Vector> {
     /// The last joint that moves it.
     pub(super) stage: Option<usize>,
-    /// A ball around each body, and one around all of them.
-    pub(super) balls: Vec<Around<V>>,
-    pub(super) ball: Around<V>,
-}
-
-/// A ball around something that a joint carries, in the frame of that joint.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Around<V: Vector> {
-    pub(super) ball: BoundingSphere<V>,
-    /// How far its centre is from the joint's origin.
-    pub(super) distance: V::Scalar,
+    pub(super) each: Vec<BoundingSphere<V>>,
+    pub(super) all: BoundingSphere<V>,
 }
 
 /// A link as it is seen from another one, or from the world, and the way from there.
@@ -126,17 +114,25 @@ impl<S: SupportMap> Linkage<S> {
             places.push((Some(stages.len()), LinkFrame::WORLD));
             stages.push((before, stage));
         }
-        let mut skeleton = Skeleton { stages, links: Vec::new(), views: Vec::new() };
-        let mut all = Vec::new();
+        let (mut balls, mut views, mut all) = (Vec::new(), Vec::new(), Vec::new());
         for (link, Link { joint, bodies }) in links.into_iter().enumerate() {
             let (stage, tail) = match joint {
                 None => (None, LinkFrame::WORLD),
                 Some(joint) => *places.get(joint).ok_or(LinkageError::NoSuchJoint { link, joint })?,
             };
-            skeleton.carry(&bodies, stage, tail).map_err(|body| LinkageError::BodyNotFinite { link, body })?;
+            let way = core::iter::successors(stage, |&index: &usize| stages[index].0);
+            let mut way: Vec<_> = way.map(|index| stages[index].1.clone()).collect();
+            way.reverse();
+            let each: Vec<_> = bodies.iter().map(ball_of).collect();
+            let reach = |ball: &BoundingSphere<S::Vector>| tail.of(ball.center).norm() + ball.radius;
+            if let Some(body) = each.iter().position(|ball| !reach(ball).is_finite()) {
+                return Err(LinkageError::BodyNotFinite { link, body });
+            }
+            views.push(LinkView { link, base: None, route: Route::new(way, tail) });
+            balls.push(LinkBalls { stage, all: ball_around(each.iter().copied()), each });
             all.push(bodies);
         }
-        Ok(Self { skeleton, bodies: all })
+        Ok(Self { skeleton: Skeleton { stages, links: balls, views }, bodies: all })
     }
 
     /// The same linkage, in which the links of these pairs are asked about one another, by their indices: those that
@@ -186,44 +182,24 @@ impl<S: SupportMap> Linkage<S> {
         self.check(0, values)?;
         let shape = self.bodies(link).get(body).ok_or(LinkageError::NoSuchBody { link, body })?;
         let (route, edge) = (&self.skeleton.views[link].route, PathEdge { from: values, to: values });
-        let (_, frame) = LinkMotion::new(route, edge, Scalar::ZERO, Bounds::REST).at(Scalar::ZERO);
+        let (_, frame) = LinkMotion::new(route, edge, Scalar::ZERO).at(Scalar::ZERO);
         let placed = Posed::from_matrix(shape, frame.rotation, frame.translation);
         placed.map_err(|_| LinkageError::BodyNotFinite { link, body })
     }
 
-    /// How far any point of a link goes at most, where joint values change from the one to the other. So a link stays
-    /// farther from what is at rest than a margin as long as that is less than the [room](crate::FreeStep) of its
-    /// distance, whichever way the joints have taken in between.
+    /// How far any point of a link goes at most, where joint values change from the one to the other: in any direction,
+    /// or along a unit vector, and then negative where all points certainly go the other way. So a link stays farther
+    /// from what is at rest than a margin as long as that is less than the [room](crate::FreeStep) of its distance,
+    /// whichever way the joints have taken in between. Against the normal of a distance it is how much nearer the link
+    /// may come to that one.
     ///
-    /// If they go straight, within a unit of time, it is no more than the highest speed, nor than that at first and half
-    /// of the highest acceleration.
-    ///
-    /// # Errors
-    /// As of [`placed`](Self::placed).
-    pub fn way(&self, link: usize, from: &[ScalarOf<S>], to: &[ScalarOf<S>]) -> Result<ScalarOf<S>, LinkageError> {
-        self.greatest_way(link, from, to, None)
-    }
-
-    /// The same along a direction, a unit vector: negative where all points certainly go the other way. Towards the other
-    /// body, against the normal of a distance, it is how much nearer the link may come to that one.
-    ///
-    /// At first the points of a body, whose support function is `h` about an origin of the velocity `v`, go by
-    /// `n·v + h(n × ω)`.
+    /// If the joints go straight, within a unit of time, it is no more than the highest speed, nor than that at first and
+    /// half of the highest acceleration. At first the points of a body, whose support function is `h` about an origin of
+    /// the velocity `v`, go along `n` by `n·v + h(n × ω)`.
     ///
     /// # Errors
     /// As of [`placed`](Self::placed).
-    pub fn way_along(
-        &self,
-        link: usize,
-        from: &[ScalarOf<S>],
-        to: &[ScalarOf<S>],
-        n: S::Vector,
-    ) -> Result<ScalarOf<S>, LinkageError> {
-        self.greatest_way(link, from, to, Some(n))
-    }
-
-    /// The greatest way of a point of a link, along a direction or in any.
-    fn greatest_way(
+    pub fn way(
         &self,
         link: usize,
         from: &[ScalarOf<S>],
@@ -232,23 +208,75 @@ impl<S: SupportMap> Linkage<S> {
     ) -> Result<ScalarOf<S>, LinkageError> {
         self.check(0, from)?;
         self.check(1, to)?;
-        let Carried { ball: Around { ball, distance }, .. } =
-            *self.skeleton.links.get(link).ok_or(LinkageError::NoSuchBody { link, body: 0 })?;
-        let route = &self.skeleton.views[link].route;
-        let (edge, reach) = (PathEdge { from, to }, distance + ball.radius);
-        let bounds = edge.bounds(route);
-        let (moving, frame) = LinkMotion::new(route, edge, Scalar::ZERO, bounds).at(Scalar::ZERO);
+        let ball = self.skeleton.links.get(link).ok_or(LinkageError::NoSuchBody { link, body: 0 })?.all;
+        let (route, edge) = (&self.skeleton.views[link].route, PathEdge { from, to });
+        let motion = LinkMotion::new(route, edge, Scalar::ZERO);
+        let ((moving, frame), reach) = (motion.at(Scalar::ZERO), motion.distance(ball.center) + ball.radius);
         let at_first = if let Some(n) = along {
             let turned = frame.rotation.transpose_mul(axial::turning(moving.spin, -n));
             let farthest = self.bodies(link).iter().map(|body| support_value(body, turned));
             n.dot(moving.velocity_at(frame.translation)) + farthest.fold(Float::neg_infinity(), Float::max)
         } else {
-            moving.velocity_at(moving.frame.of(ball.center)).norm() + moving.spin.norm() * ball.radius
+            moving.velocity_at(frame.of(ball.center)).norm() + moving.spin.norm() * ball.radius
         };
-        let near = at_first + bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
-        let always = bounds.speed.of(reach);
+        let near = at_first + motion.bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
+        let always = motion.bounds.speed.of(reach);
         // What the frame and the derivatives lose is a small part of what always holds.
         Ok(near.min(always) + always * (moving.frame.turn_error + epsilons(64.0)))
+    }
+
+    /// The derivatives of the time of a first contact on this path by the joint values at both ends of its edge, for each
+    /// joint that moves. `None` where links overlap as the path begins, or touch and do not approach one another.
+    ///
+    /// With `n` the normal and `p` the point of contact, joint `j` lifts the link off what it meets by `gⱼ = n·∂p/∂qⱼ`.
+    /// The gap closes at the rate `−Σ gⱼ·q̇ⱼ`, so that the time changes by `Σ gⱼ·δqⱼ` over that, and a change of the value
+    /// at the end of the edge changes that at the time `t` by a share of `t`, one at its beginning by `1 − t`.
+    ///
+    /// Where there is only one point of contact they are derivatives, and elsewhere one-sided derivatives.
+    ///
+    /// ```
+    /// use convex_support::{Ball, glam::DVec2};
+    /// use gjk_raycast::{HalfSpace, Joint, Link, Linkage, LinkageOptions, PathWorkspace, Pose, Scene};
+    ///
+    /// // A ball of radius 1 slides from x = 0 to 4, and meets a wall at x = 3 when half of that is done.
+    /// let slide = Joint::prismatic(None, Pose::default(), DVec2::X);
+    /// let robot = Linkage::new([slide], [Link { joint: Some(0), bodies: vec![Ball::new(1.0)?] }])?;
+    /// let mut scene = Scene::<Ball<DVec2>>::default();
+    /// scene.insert_half_space(HalfSpace::new(DVec2::NEG_X, -3.0)?);
+    /// let ways = [[0.0], [4.0]];
+    /// let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
+    /// let contact = path.contact().ok_or("it meets the wall")?;
+    ///
+    /// // t = (2 − from)/(to − from)
+    /// let [[by_from, by_to]] = robot.time_gradient(&ways, &contact).ok_or("it comes nearer")?[..] else {
+    ///     return Err("there is one joint".into());
+    /// };
+    /// assert!((by_from + 2.0 / 16.0).abs() < 1e-12 && (by_to + 2.0 / 16.0).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn time_gradient<W: AsRef<[ScalarOf<S>]>>(
+        &self,
+        waypoints: &[W],
+        contact: &PathContact<S::Vector>,
+    ) -> Option<Vec<[ScalarOf<S>; 2]>> {
+        let &PathContact { edge, time, link, met, point, normal, .. } = contact;
+        let ends = [edge, edge + 1].map(|i| waypoints.get(i).map(AsRef::as_ref));
+        let edge = PathEdge { from: ends[0]?, to: ends[1]? };
+        self.check(0, edge.from).and(self.check(1, edge.to)).ok()?;
+        let other = if let Met::Link { link, .. } = met { Some(link) } else { None };
+        let (one, mut rises) = (ScalarOf::<S>::ONE, edge.from.iter().map(|_| Scalar::ZERO).collect::<Vec<_>>());
+        for (link, sign) in [(Some(link), one), (other, -one)] {
+            let mut moving = Moving::WORLD;
+            let Some(link) = link else { continue };
+            for stage in &self.skeleton.views.get(link)?.route.stages {
+                moving = moving.beyond(stage, edge.at(stage.column, time));
+                rises[stage.column] += stage.rise(stage.placed(&moving.frame), normal?, point) * sign;
+            }
+        }
+        let rates = edge.to.iter().zip(edge.from).map(|(to, from)| *to - *from);
+        let closing = rates.zip(&rises).fold(ScalarOf::<S>::ZERO, |sum, (rate, rise)| sum - rate * *rise);
+        let by_values = |rise: ScalarOf<S>| [one - time, time].map(|share| rise / closing * share);
+        (closing > Scalar::ZERO).then(|| rises.into_iter().map(by_values).collect())
     }
 
     /// Whether these are values of all joints.
@@ -264,39 +292,10 @@ impl<S: SupportMap> Linkage<S> {
 }
 
 impl<V: Vector> Skeleton<V> {
-    /// Adds a link of these bodies behind a joint, if each has a ball around it; else tells the first that has none.
-    fn carry<S: SupportMap<Vector = V>>(
-        &mut self,
-        bodies: &[S],
-        stage: Option<usize>,
-        tail: LinkFrame<V>,
-    ) -> Result<(), usize> {
-        let before = |&index: &usize| self.stages[index].0;
-        let mut way: Vec<_> = core::iter::successors(stage, before).map(|index| self.stages[index].1.clone()).collect();
-        way.reverse();
-        let balls: Vec<_> = bodies.iter().map(|body| Around::new(ball_of(body), &tail)).collect();
-        if let Some(body) = balls.iter().position(|around| !(around.distance + around.ball.radius).is_finite()) {
-            return Err(body);
-        }
-        let ball = Around::new(ball_around(balls.iter().map(|around| around.ball)), &LinkFrame::WORLD);
-        self.views.push(LinkView { link: self.links.len(), base: None, route: Route::new(way, tail) });
-        self.links.push(Carried { stage, balls, ball });
-        Ok(())
-    }
-
     /// The way from the second to the first of two links, if there are such.
     pub(super) fn between(&self, [a, b]: [usize; 2]) -> Option<Route<V>> {
         let count = self.links.len();
         (a != b && a.max(b) < count).then(|| Route::between(&self.views[b].route, &self.views[a].route))
-    }
-}
-
-impl<V: Vector> Around<V> {
-    /// A ball in a frame of the joint.
-    fn new(ball: BoundingSphere<V>, tail: &LinkFrame<V>) -> Self {
-        let (center, error) = (tail.of(ball.center), tail.error_of(ball.center.norm()));
-        let ball = BoundingSphere { center, radius: raised(ball.radius + error) };
-        Self { ball, distance: raised(center.norm() + error) }
     }
 }
 
@@ -316,24 +315,4 @@ fn ball_around<V: Vector>(balls: impl Iterator<Item = BoundingSphere<V>> + Clone
     let center = (least + most) * V::Scalar::from_f64(0.5);
     let reach = |ball: BoundingSphere<V>| (ball.center - center).norm() + ball.radius;
     BoundingSphere { center, radius: raised(balls.map(reach).fold(V::Scalar::ZERO, Float::max)) }
-}
-
-impl<V: Vector> Joint<V> {
-    /// A joint that turns about an axis, at a pose in its parent's frame.
-    #[must_use]
-    pub fn revolute(parent: Option<usize>, pose: Pose<V>, axis: V::AngularVelocity) -> Self {
-        Self { parent, pose, kind: JointKind::Revolute(axis) }
-    }
-
-    /// A joint that slides along an axis.
-    #[must_use]
-    pub fn prismatic(parent: Option<usize>, pose: Pose<V>, axis: V) -> Self {
-        Self { parent, pose, kind: JointKind::Prismatic(axis) }
-    }
-
-    /// A joint that does not move.
-    #[must_use]
-    pub fn fixed(parent: Option<usize>, pose: Pose<V>) -> Self {
-        Self { parent, pose, kind: JointKind::Fixed }
-    }
 }

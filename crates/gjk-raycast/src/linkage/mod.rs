@@ -7,19 +7,14 @@ mod joint_box;
 mod link_motion;
 #[allow(clippy::module_inception, reason = "it is the type that the folder is about")]
 mod linkage;
-mod moving;
 mod path;
-mod proof;
 mod result;
-mod route;
-mod stage;
 mod sweep;
-mod time_gradient;
 
 pub use error::LinkageError;
 pub use joint::{Joint, JointKind, Link};
 pub use joint_box::{JointBox, JointBoxOutcome};
 pub use linkage::Linkage;
-pub use path::{LinkageOptions, PathWorkspace};
-pub use proof::{FreeBox, FreeInterval};
-pub use result::{Met, Path, PathContact, PathOutcome, PathStop, PathWork};
+pub use path::LinkageOptions;
+pub use result::{FreeBox, FreeInterval, Met, Path, PathContact, PathOutcome, PathStop, PathWork};
+pub use sweep::PathWorkspace;

@@ -1,18 +1,13 @@
 //! Whether a linkage meets anything along a path.
 
-use alloc::vec::Vec;
-
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::error::LinkageError;
 use super::link_motion::{LinkMotion, PathEdge};
 use super::linkage::{LinkView, Linkage};
-use super::proof::{FreeInterval, ProvedSteps};
-use super::result::{Met, Path, PathContact, PathOutcome, PathStop, PathWork};
-use super::sweep::{Near, Sweep, SweepSpace};
-use crate::half_space::Plane;
-use crate::motion::Bounds;
+use super::result::{FreeInterval, Met, Path, PathContact, PathOutcome, PathStop, PathWork, ProvedSteps};
+use super::sweep::{Near, PathWorkspace, Sweep};
 use crate::motion::checked;
 use crate::options::setters;
 use crate::{Body, Impact, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene};
@@ -33,7 +28,7 @@ pub struct LinkageOptions<V: Vector> {
     pub max_iterations: usize,
     /// The end of what is asked of a path: a time, of which each edge takes 1. A negative value is taken for zero. Default:
     /// infinity.
-    pub until: V::Scalar,
+    pub max_time: V::Scalar,
     /// The parts of a box of joint values to look at, after which to give up. Default: 100 000.
     pub max_boxes: usize,
 }
@@ -42,19 +37,12 @@ impl<V: Vector> LinkageOptions<V> {
     /// The default options.
     #[must_use]
     pub fn new() -> Self {
-        let MotionCastOptions { target_distance, tolerance, max_iterations, max_time: until, .. } =
+        let MotionCastOptions { target_distance, tolerance, max_iterations, max_time, .. } =
             MotionCastOptions::<V>::new();
-        Self { target_distance, tolerance, max_iterations, until, max_boxes: MAX_BOXES }
+        Self { target_distance, tolerance, max_iterations, max_time, max_boxes: MAX_BOXES }
     }
 
-    setters!(target_distance, tolerance, max_iterations);
-
-    /// With another [end](Self::until).
-    #[must_use]
-    pub const fn with_until(mut self, until: V::Scalar) -> Self {
-        self.until = until;
-        self
-    }
+    setters!(target_distance, tolerance, max_iterations, max_time);
 
     /// With another number of [parts](Self::max_boxes).
     #[must_use]
@@ -65,29 +53,14 @@ impl<V: Vector> LinkageOptions<V> {
 
     /// Those of casts.
     pub(super) fn checked(&self) -> Result<MotionCastOptions<V>, RayCastError> {
-        let options = MotionCastOptions::new().with_target_distance(self.target_distance).with_max_time(self.until);
-        checked(options.with_tolerance(self.tolerance).with_max_iterations(self.max_iterations))
+        let &Self { target_distance, tolerance, max_iterations, max_time, .. } = self;
+        checked(MotionCastOptions { target_distance, tolerance, max_iterations, max_time, ..MotionCastOptions::new() })
     }
 }
 
 impl<V: Vector> Default for LinkageOptions<V> {
     fn default() -> Self {
         Self::new()
-    }
-}
-
-/// What [`Linkage::path`] works with. Once it has served a path of a linkage, the next allocates nothing.
-#[derive(Clone, Debug, Default)]
-pub struct PathWorkspace<V: Vector> {
-    sweep: SweepSpace<V>,
-    half_spaces: Vec<(usize, Plane<V>)>,
-}
-
-impl<V: Vector> PathWorkspace<V> {
-    /// An empty one.
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
     }
 }
 
@@ -141,7 +114,7 @@ impl<S: SupportMap> Linkage<S> {
         paths: &[P],
         scene: &Scene<O>,
         options: LinkageOptions<S::Vector>,
-    ) -> Vec<Result<Path<S::Vector>, LinkageError>>
+    ) -> alloc::vec::Vec<Result<Path<S::Vector>, LinkageError>>
     where
         S: Sync,
     {
@@ -162,9 +135,8 @@ impl<S: SupportMap> Linkage<S> {
         for (index, waypoint) in waypoints.iter().enumerate() {
             self.check(index, waypoint.as_ref())?;
         }
-        let PathWorkspace { sweep, half_spaces } = workspace;
-        half_spaces.clear();
-        half_spaces.extend(scene.all().half_spaces().map(|(index, half_space)| (index, half_space.plane())));
+        workspace.half_spaces.clear();
+        workspace.half_spaces.extend(scene.all().half_spaces().map(|(index, half_space)| (index, half_space.plane())));
         let (mut work, mut open) = (PathWork::default(), None);
         // Where an observer is to see what proves it, everything is cast.
         let target = if observer.is_some() { Float::infinity() } else { options.target_distance };
@@ -178,18 +150,17 @@ impl<S: SupportMap> Linkage<S> {
             let [from, to] = [index, last.min(index + 1)].map(|waypoint| waypoints[waypoint].as_ref());
             let edge = PathEdge { from, to };
             let mut first = First::<S::Vector> { edge: index, contact: None, stop: None };
-            sweep.parts = 0;
-            let mut sweeping =
-                Sweep { skeleton: &self.skeleton, tree: scene.tree(), half_spaces, edge, target, space: sweep };
-            sweeping.run(duration, &mut |near, bounds| {
+            let (skeleton, tree, space) = (&self.skeleton, scene.tree(), &mut *workspace);
+            let mut sweep = Sweep { skeleton, tree, edge, target, space, end: duration, parts: 0 };
+            sweep.run(&mut |near| {
                 work.casts += 1;
-                let (on, options) = ((edge, bounds), options.with_max_time(duration));
+                let options = options.with_max_time(duration);
                 if let Some(base) = self.skeleton.views[near.view].base {
                     let base = Body::Convex(&self.bodies[base][near.other]);
-                    self.cast(near, (&base, None), on, options, &mut first, &mut observer)?;
+                    self.cast(near, (&base, None), edge, options, &mut first, &mut observer)?;
                 } else if let Some(obstacle) = scene.get(near.other) {
                     let at = scene.tree().get(near.other).map(|around| around.center());
-                    self.cast(near, (obstacle, at), on, options, &mut first, &mut observer)?;
+                    self.cast(near, (obstacle, at), edge, options, &mut first, &mut observer)?;
                 }
                 Ok(first.end(duration))
             })?;
@@ -214,17 +185,17 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         near: &Near<ScalarOf<S>>,
         (against, at): (&Body<O>, Option<S::Vector>),
-        (edge, bounds): (PathEdge<'_, ScalarOf<S>>, &Bounds<ScalarOf<S>>),
+        edge: PathEdge<'_, ScalarOf<S>>,
         options: MotionCastOptions<S::Vector>,
         first: &mut First<S::Vector>,
         observer: &mut Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<(), RayCastError> {
         let &Near { from, to, view, body, other } = near;
         let LinkView { link, base, ref route } = self.skeleton.views[view];
-        let (motion, shape) = (LinkMotion::new(route, edge, from, *bounds), &self.bodies[link][body]);
+        let (motion, shape) = (LinkMotion::new(route, edge, from), &self.bodies[link][body]);
         let met = base.map_or(Met::Obstacle(other), |link| Met::Link { link, body: other });
         // A first guess of the normal.
-        let center = motion.at(Scalar::ZERO).0.frame.of(self.skeleton.links[link].balls[body].ball.center);
+        let center = motion.at(Scalar::ZERO).1.of(self.skeleton.links[link].each[body].center);
         let axis = at.map(|at| center - at);
         let mut cast_to = |end| {
             let mut steps = ProvedSteps::NONE;
@@ -249,7 +220,7 @@ impl<S: SupportMap> Linkage<S> {
         if let (Outcome::Hit(hit), Some(base)) = (&mut cast.outcome, base) {
             // It was seen from the second link.
             let route = &self.skeleton.views[base].route;
-            let frame = LinkMotion::new(route, edge, from, Bounds::REST).at(hit.time).1;
+            let frame = LinkMotion::new(route, edge, from).at(hit.time).1;
             (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
         }
         first.take(cast, near, link, met);
@@ -300,10 +271,10 @@ impl<V: Vector> First<V> {
     /// What is known at the end of the edge before, where that is [open](is_open_at_end) and this edge follows: where
     /// this one begins in contact, or comes to one at once, that is the contact, at the waypoint.
     fn goes_on(&self, open: PathOutcome<V>) -> PathOutcome<V> {
-        let (edge, lower) = match open {
-            PathOutcome::Contact(contact) => (contact.edge, contact.lower),
-            PathOutcome::Undecided(stop) => (stop.edge, stop.lower),
-            PathOutcome::Free => return open,
+        let (PathOutcome::Contact(PathContact { edge, lower, .. })
+        | PathOutcome::Undecided(PathStop { edge, lower, .. })) = open
+        else {
+            return open;
         };
         match self.outcome() {
             Some(PathOutcome::Contact(contact)) if contact.is_certain() && contact.upper < at_waypoint() => {
@@ -329,10 +300,11 @@ fn at_waypoint<S: Scalar>() -> S {
 
 /// Whether something may be met at the end of an edge, and not before it.
 fn is_open_at_end<V: Vector>(outcome: &PathOutcome<V>) -> bool {
-    let lower = match outcome {
-        PathOutcome::Contact(contact) if !contact.is_certain() => contact.lower,
-        PathOutcome::Undecided(stop) => stop.lower,
-        PathOutcome::Free | PathOutcome::Contact(_) => return false,
-    };
-    V::Scalar::ONE - lower < at_waypoint()
+    match outcome {
+        PathOutcome::Contact(contact) if contact.is_certain() => false,
+        PathOutcome::Contact(PathContact { lower, .. }) | PathOutcome::Undecided(PathStop { lower, .. }) => {
+            V::Scalar::ONE - *lower < at_waypoint()
+        }
+        PathOutcome::Free => false,
+    }
 }

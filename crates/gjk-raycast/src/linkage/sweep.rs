@@ -1,7 +1,7 @@
 //! Which bodies may come near one another along an edge, and when.
 //!
-//! The edge is halved again and again. At the middle of each part the joints are placed once, for all links. A ball
-//! around a link has moved from there by no more than its velocity `v` and its acceleration `a` there tell, and a bound
+//! The edge is halved again and again. At the middle of each part the joints are placed once, for all links that the
+//! world sees. A ball around a link has moved from there by no more than its velocity `v` and its acceleration `a` there tell, and a bound
 //! on how fast that changes: by `v·h + a·h²/2 + j·h³/6` within the time `h`. If nothing is within that reach, the link is
 //! free for the whole part; else, once the reach is not much more than the ball itself, its bodies and what is near them
 //! are left to be cast.
@@ -13,13 +13,11 @@ use convex_support::{Aabb, BoundingSphere, BoxDistance, Bvh, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::frame::epsilons;
-use super::link_motion::PathEdge;
-use super::linkage::{Around, LinkView, Skeleton};
-use super::moving::Moving;
+use super::joint::Moving;
+use super::link_motion::{LinkMotion, PathEdge};
+use super::linkage::{LinkView, Skeleton};
 use crate::RayCastError;
-use crate::axial;
 use crate::half_space::Plane;
-use crate::motion::Bounds;
 
 /// A ball that moves by more than this part of its radius is looked at in a shorter time.
 const COARSE: f64 = 0.5;
@@ -41,39 +39,41 @@ pub(super) struct Near<S> {
     pub(super) other: usize,
 }
 
-/// What a sweep works with; it is kept from edge to edge.
+/// What [`Linkage::path`](crate::Linkage::path) works with. Once it has served a path of a linkage, the next allocates
+/// nothing.
 #[derive(Clone, Debug, Default)]
-pub(super) struct SweepSpace<V: Vector> {
-    /// How the joints move at the middle of a part.
+pub struct PathWorkspace<V: Vector> {
+    pub(super) half_spaces: Vec<(usize, Plane<V>)>,
+    /// How the joints move at the middle of a part, as the world sees it.
     moving: Vec<Moving<V>>,
     /// The views that are not known to be free in the parts that are being looked at.
     views: Vec<usize>,
-    /// The bounds of each view.
-    bounds: Vec<Bounds<V::Scalar>>,
     /// What is near a link.
     found: Vec<usize>,
     /// What has been found and not yet shown.
     near: Vec<Near<V::Scalar>>,
-    pub(super) parts: usize,
+}
+
+impl<V: Vector> PathWorkspace<V> {
+    /// An empty one.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
 }
 
 /// A look for what is near along an edge.
 pub(super) struct Sweep<'s, V: Vector> {
     pub(super) skeleton: &'s Skeleton<V>,
     pub(super) tree: &'s Bvh<V>,
-    pub(super) half_spaces: &'s [(usize, Plane<V>)],
     pub(super) edge: PathEdge<'s, V::Scalar>,
     /// How near is too near; infinite where everything is to be shown.
     pub(super) target: V::Scalar,
-    pub(super) space: &'s mut SweepSpace<V>,
-}
-
-/// A part of an edge: half of its duration, and whether it is as short as it gets.
-#[derive(Clone, Copy)]
-struct EdgePart<S> {
-    times: [S; 2],
-    half: S,
-    is_last: bool,
+    pub(super) space: &'s mut PathWorkspace<V>,
+    /// The time from which on nothing matters.
+    pub(super) end: V::Scalar,
+    /// The parts that were looked at.
+    pub(super) parts: usize,
 }
 
 /// Everything that a ball touches in a part of an edge.
@@ -88,22 +88,17 @@ struct SweptBall<V: Vector> {
 }
 
 impl<V: Vector> Sweep<'_, V> {
-    /// Shows what may come near in an edge that takes some time: 1, or 0 of a path that is a pose. It is shown in the
-    /// order of time but for what is near for long, and beside it the bounds of its view. The answer is a time from which
-    /// on nothing matters.
+    /// Shows what may come near until the end, in the order of time but for what is near for long. Who is shown it answers
+    /// with a time from which on nothing matters.
     pub(super) fn run(
         &mut self,
-        duration: V::Scalar,
-        show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>) -> Result<V::Scalar, RayCastError>,
+        show: &mut impl FnMut(&Near<V::Scalar>) -> Result<V::Scalar, RayCastError>,
     ) -> Result<(), RayCastError> {
-        let (space, views) = (&mut *self.space, &self.skeleton.views);
-        space.bounds.clear();
-        space.bounds.extend(views.iter().map(|view| self.edge.bounds(&view.route)));
+        let (space, views) = (&mut *self.space, self.skeleton.views.len());
         space.near.clear();
         space.views.clear();
-        space.views.extend(0..views.len());
-        let mut end = duration;
-        self.visit([V::Scalar::ZERO, duration], 0, 0..views.len(), &mut end, show)
+        space.views.extend(0..views);
+        self.visit([V::Scalar::ZERO, self.end], 0, 0..views, show)
     }
 
     /// Looks at a part of the edge for what is not known to be free in all of it.
@@ -112,27 +107,26 @@ impl<V: Vector> Sweep<'_, V> {
         times @ [from, to]: [V::Scalar; 2],
         depth: u32,
         views: Range<usize>,
-        end: &mut V::Scalar,
-        show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>) -> Result<V::Scalar, RayCastError>,
+        show: &mut impl FnMut(&Near<V::Scalar>) -> Result<V::Scalar, RayCastError>,
     ) -> Result<(), RayCastError> {
-        if from > *end {
+        if from > self.end {
             return Ok(());
         }
         let half = (to - from) * V::Scalar::from_f64(0.5);
         let is_last = depth == MAX_DEPTH || half == V::Scalar::ZERO || self.target == V::Scalar::infinity();
         self.place(from + half);
-        self.space.parts += 1;
+        self.parts += 1;
         let rest = self.space.views.len();
         for at in views {
             let view = self.space.views[at];
-            if self.is_coarse(view, EdgePart { times, half, is_last }) {
+            if self.is_coarse(view, times, half, is_last) {
                 self.space.views.push(view);
             }
         }
         let coarse = rest..self.space.views.len();
         if !coarse.is_empty() {
             for part in [[from, from + half], [from + half, to]] {
-                self.visit(part, depth + 1, coarse.clone(), end, show)?;
+                self.visit(part, depth + 1, coarse.clone(), show)?;
             }
             self.space.views.truncate(rest);
         }
@@ -140,9 +134,9 @@ impl<V: Vector> Sweep<'_, V> {
             join(&mut self.space.near);
             for near in self.space.near.drain(..) {
                 // A contact found before bounds those after it.
-                if near.from <= *end {
-                    let cut = Near { to: near.to.min(*end), ..near };
-                    *end = end.min(show(&cut, &self.space.bounds[near.view])?);
+                if near.from <= self.end {
+                    let cut = Near { to: near.to.min(self.end), ..near };
+                    self.end = self.end.min(show(&cut)?);
                 }
             }
         }
@@ -160,27 +154,26 @@ impl<V: Vector> Sweep<'_, V> {
 
     /// Looks for what is near a link, body by body. If something is, and the link moves too far, the part is to be halved
     /// instead.
-    fn is_coarse(&mut self, index: usize, EdgePart { times: [from, to], half, is_last }: EdgePart<V::Scalar>) -> bool {
-        let LinkView { link, base, route } = &self.skeleton.views[index];
-        let (link, base) = (&self.skeleton.links[*link], base.map(|base| &self.skeleton.links[base]));
-        let (world, placed, bounds) = (Moving::WORLD, &self.space.moving, &self.space.bounds[index]);
-        let moving = |stage: Option<usize>| stage.map_or(&world, |stage| &placed[stage]);
-        let (carrier, ground) = (moving(link.stage), base.map(|base| moving(base.stage)));
-        let seen = |around: &Around<V>| SweptBall::of(*around, route.rim, carrier, ground, bounds, half);
-        let is_near = |reach: &SweptBall<V>, Around { ball, distance }: &Around<V>| {
-            let frame = &ground.unwrap_or(&world).frame;
-            let (center, room) = (frame.of(ball.center), ball.radius + frame.error_of(*distance));
-            reach.meets_box(&Aabb { min: center, max: center }, room + self.target)
+    fn is_coarse(&mut self, index: usize, [from, to]: [V::Scalar; 2], half: V::Scalar, is_last: bool) -> bool {
+        let LinkView { link, base, ref route } = self.skeleton.views[index];
+        let (link, base) = (&self.skeleton.links[link], base.map(|base| &self.skeleton.links[base]));
+        let motion = LinkMotion::new(route, self.edge, from + half);
+        let motion = match base {
+            Some(_) => motion,
+            None => motion.with_known(link.stage.map_or(Moving::WORLD, |stage| self.space.moving[stage])),
         };
-        let reach = seen(&link.ball);
-        let smaller = base.map_or(link.ball.ball.radius, |base| link.ball.ball.radius.min(base.ball.ball.radius));
+        let is_near = |reach: &SweptBall<V>, &BoundingSphere { center, radius }: &BoundingSphere<V>| {
+            reach.meets_box(&Aabb { min: center, max: center }, radius + self.target)
+        };
+        let reach = SweptBall::of(&link.all, &motion, half);
+        let smaller = base.map_or(link.all.radius, |base| link.all.radius.min(base.all.radius));
         let is_coarse = !is_last && reach.drift > smaller * V::Scalar::from_f64(COARSE);
         let mut found = core::mem::take(&mut self.space.found);
         found.clear();
         if let Some(base) = base {
-            found.extend(0..if is_near(&reach, &base.ball) { base.balls.len() } else { 0 });
+            found.extend(0..if is_near(&reach, &base.all) { base.each.len() } else { 0 });
         } else {
-            let planes = self.half_spaces.iter();
+            let planes = self.space.half_spaces.iter();
             found.extend(planes.filter(|(_, plane)| reach.meets_plane(plane, self.target)).map(|(index, _)| *index));
             self.tree.within(&BoxDistance::new(reach.around()), self.target, |body| {
                 found.push(body);
@@ -188,13 +181,13 @@ impl<V: Vector> Sweep<'_, V> {
             });
         }
         let is_coarse = is_coarse && !found.is_empty();
-        for (body, around) in link.balls.iter().enumerate().filter(|_| !is_coarse && !found.is_empty()) {
-            let reach = seen(around);
+        for (body, ball) in link.each.iter().enumerate().filter(|_| !is_coarse && !found.is_empty()) {
+            let reach = SweptBall::of(ball, &motion, half);
             let meets = |other: usize| match (base, self.tree.get(other)) {
-                (Some(base), _) => is_near(&reach, &base.balls[other]),
+                (Some(base), _) => is_near(&reach, &base.each[other]),
                 (None, Some(around)) => reach.meets_box(&around, self.target),
                 (None, None) => {
-                    self.half_spaces.iter().any(|(k, plane)| *k == other && reach.meets_plane(plane, self.target))
+                    self.space.half_spaces.iter().any(|(k, plane)| *k == other && reach.meets_plane(plane, self.target))
                 }
             };
             let near = found.iter().filter(|&&other| meets(other));
@@ -206,39 +199,20 @@ impl<V: Vector> Sweep<'_, V> {
 }
 
 impl<V: Vector> SweptBall<V> {
-    /// Of a ball that a joint carries, as it moves against another frame that moves, or the world; `rim` is how far the
-    /// joint is from the last one of the route between them, whose bounds these are.
-    ///
-    /// Seen from a frame that turns at `ω`, a point that moves at `v` against it has the acceleration `2ω × v` less.
-    fn of(
-        Around { ball: BoundingSphere { center, radius }, distance }: Around<V>,
-        rim: V::Scalar,
-        moving: &Moving<V>,
-        base: Option<&Moving<V>>,
-        bounds: &Bounds<V::Scalar>,
-        half: V::Scalar,
-    ) -> Self {
+    /// Of a ball in the frame of a link, which is in the middle of the part as its motion begins.
+    fn of(ball: &BoundingSphere<V>, motion: &LinkMotion<'_, V>, half: V::Scalar) -> Self {
         let (number, squared) = (V::Scalar::from_f64, half * half);
-        let center = moving.frame.of(center);
-        let (mut velocity, mut acceleration) = (moving.velocity_at(center), moving.acceleration_at(center));
-        let from_last = distance + rim;
-        let bent = bounds.jerk.of(from_last) * half * squared * number(1.0 / 6.0);
-        let always = bounds.speed.of(from_last) * half;
-        let (mut lengths, mut turn_error) = (always + bent + distance, moving.frame.turn_error + epsilons(64.0));
-        if let Some(base) = base {
-            let (carried, accelerated) = (base.velocity_at(center), base.acceleration_at(center));
-            velocity -= carried;
-            let turning = axial::turning(base.spin, velocity);
-            acceleration = acceleration - accelerated - turning - turning;
-            lengths += carried.norm() * half + accelerated.norm() * squared;
-            turn_error += base.frame.turn_error;
-        }
+        let ((moving, frame), bounds) = (motion.at(V::Scalar::ZERO), &motion.bounds);
+        let (center, distance) = (frame.of(ball.center), motion.distance(ball.center));
+        let bent = bounds.jerk.of(distance) * half * squared * number(1.0 / 6.0);
+        let always = bounds.speed.of(distance) * half;
+        let (velocity, acceleration) = (moving.velocity_at(center), moving.acceleration_at(center));
         let way = velocity.abs() * half + acceleration.abs() * (squared * number(0.5)) + V::splat(bent);
         let way = way.min(V::splat(always));
         let drift = way.norm().min(always);
         // What rounding does to where the ball is, and to derivatives of which these lengths are made.
-        let lost = turn_error * lengths;
-        let room = radius + moving.frame.error_of(distance) + lost;
+        let lost = (frame.turn_error + epsilons(64.0)) * (always + bent + distance);
+        let room = ball.radius + frame.error_of(ball.center.norm()) + lost;
         Self { center, along: (way + V::splat(room)) * above::<V>(), radius: (room + drift) * above::<V>(), drift }
     }
 

@@ -1,4 +1,4 @@
-//! Two boxes where they are at a time, and the facets of their difference.
+//! A look at two moving boxes, by the facets of their difference.
 //!
 //! The difference of two boxes is `c + Σ tₖ·hₖ·eₖ` with all `|tₖ| ≤ 1`: `eₖ` are unit vectors along the six edges of
 //! both, and `hₖ` half the lengths of these. Each of its facets is spanned by two edges, those of a face of one box or
@@ -15,13 +15,23 @@
 //!
 //! The highest facet mostly stays the highest, and as long as it does, its level is as smooth as the motion, also where
 //! the boxes begin to overlap.
+//!
+//! Well apart, or deep in one another, the boxes are seen by the highest facet. Nearly in contact, a support point along
+//! its normal tells its level as well as that can be known. Where they overlap by more than the level may be wrong by,
+//! the line through zero along the normal proves it: on one side of zero it goes through the facet, and on the other
+//! side it is within the difference.
 
-use convex_support::{Core, CoreKind, Parallelotope, Scalar, Vector};
+use convex_support::{Core, CoreKind, Hint, Parallelotope, Scalar, SupportMap as _, Vector};
 use num_traits::Float;
 
-use super::moved::Moved;
+use super::instant::{Instant, Limits, NEAR};
+use super::moving_pair::MovingPair;
+use super::placed::{Moved, Placed};
 use crate::double::{LEAST, Vec3, array, cross, dot};
+use crate::gjk::rounding;
+use crate::separation::{Uncertainty, slack};
 use crate::shape::Shape;
+use crate::unit::is_moderate;
 
 /// Edges of two boxes.
 const EDGES: usize = 6;
@@ -45,6 +55,17 @@ const WITHIN: f64 = 64.0;
 /// What a product with a unit vector is wrong by, in ε of the magnitudes of its terms.
 const PRODUCT: f64 = 3.0;
 
+/// As a part of the way from zero's foot to the sides of a facet, how deep zero may be behind it without being nearer
+/// to another.
+const DEEP: f64 = 0.25;
+
+/// What a level is wrong by, in units of what a bound by a support point loses: it is a sum of six edges, each of which
+/// was turned, where that is of two points.
+const LEVEL: f64 = 2.0;
+
+/// The same of a level from near, roughly.
+const FROM_NEAR: f64 = 0.5;
+
 /// A core that is a box, as its body starts: its centre relative to the body's origin, unit vectors along its edges,
 /// and half the lengths of these.
 #[derive(Clone, Copy)]
@@ -55,7 +76,7 @@ pub(super) struct Block<V> {
 }
 
 /// The difference of two boxes where they are at a time.
-pub(super) struct Boxes {
+struct Boxes {
     /// The centre of the second, relative to its body's origin, and the centre of the difference.
     from: Vec3,
     center: Vec3,
@@ -70,17 +91,102 @@ pub(super) struct Boxes {
 pub(super) type FacetEdges = [usize; 2];
 
 /// A facet of the difference of two boxes.
-pub(super) struct BoxFacet {
-    pub(super) span: FacetEdges,
+struct BoxFacet {
+    span: FacetEdges,
     /// The unit vector across it, from the second box to the first.
-    pub(super) normal: Vec3,
+    normal: Vec3,
     /// How far zero is beyond it.
-    pub(super) level: f64,
+    level: f64,
     /// How far zero's foot is from the sides of the facet; negative if it is not within.
-    pub(super) room: f64,
+    room: f64,
     /// The point of the second box, relative to its body's origin, that goes into zero's foot, or if that is not
     /// within, one that is near.
-    pub(super) point: Vec3,
+    point: Vec3,
+}
+
+impl<V: Vector> MovingPair<'_, V> {
+    /// Two boxes at a time, from near if that is asked or they are nearly in contact; `None` where it is not certain
+    /// which facet is the highest, or that proves nothing.
+    ///
+    /// All is compiled into one function, so that where the bodies are need not be written to memory and read again.
+    #[inline(always)]
+    pub(super) fn by_boxes(
+        &self,
+        time: V::Scalar,
+        blocks: &[Block<V>; 2],
+        axis: V,
+        limits: Limits<V::Scalar>,
+        is_close: bool,
+    ) -> Option<Instant<V>> {
+        let placed = self.placed_here(time);
+        let [core_a, core_b] = [placed.a.core(), placed.b.core()];
+        let size = core_a.extent + core_b.extent + placed.offset.norm();
+        if !is_moderate(size) {
+            return None;
+        }
+        let boxes = Boxes::new(blocks, (&placed.a, &placed.b), placed.offset, size.as_f64());
+        // The facet counts as a support point, which it takes the place of, and as two if it is looked for among all.
+        let facet = match self.facet.get().map(|span| boxes.facet(span)) {
+            Some(kept) if kept.room > 0.0 && kept.level > -kept.room * DEEP => kept,
+            _ => {
+                self.count(1);
+                boxes.facet(boxes.highest()?)
+            }
+        };
+        self.count(1);
+        self.facet.set((facet.room > 0.0).then_some(facet.span));
+        let normal = vector::<V>(facet.normal);
+        let (lost, errors) = (rounding(size), core_a.error + core_b.error);
+        let [level_error, from_near] = [LEVEL, FROM_NEAR].map(|factor| lost * Scalar::from_f64(factor) + errors);
+        let level = V::Scalar::from_f64(facet.level);
+        let is_rough = !is_close && Float::abs(level) > level_error * Scalar::from_f64(NEAR);
+        let (distance, gap, error, upper) = if is_rough {
+            (level, level - level_error, from_near, Float::infinity())
+        } else if limits.depth > Scalar::ZERO {
+            return None;
+        } else {
+            let [distance, error, upper] = self.near_facet(&placed, &boxes, &facet, axis)?;
+            (distance, distance - error, error, upper)
+        };
+        let point = placed.place + vector(facet.point);
+        let closing = self.closing(time, normal, [point + normal * distance, point]);
+        Some(Instant { time, normal, gap, distance, upper, error, closing, point, is_close: !is_rough })
+    }
+
+    /// The distance as a facet tells it as well as it can be known, what that is wrong by, and what it is certainly not
+    /// more than, if zero's foot is within the facet, and it proves that the boxes are apart or overlap.
+    #[inline(always)]
+    fn near_facet(
+        &self,
+        Placed { a, b, offset, .. }: &Placed<'_, V>,
+        boxes: &Boxes,
+        facet: &BoxFacet,
+        axis: V,
+    ) -> Option<[V::Scalar; 3]> {
+        let normal = vector::<V>(facet.normal);
+        // Not where they have passed through one another.
+        if !(facet.room > 0.0 && normal.dot(axis) > Scalar::ZERO) {
+            return None;
+        }
+        let corner = a.core_support(-normal, &mut Hint::new()) - b.core_support(normal, &mut Hint::new());
+        self.count(1);
+        let distance = normal.dot(corner + *offset);
+        let shapes = [a.rounding(), b.rounding()];
+        let errors = shapes.map(|shape| shape.error_length.as_f64());
+        let uncertainty = Uncertainty::of_exact_offset(shapes, *offset);
+        let error = uncertainty.along(normal) + slack(distance, Scalar::ZERO);
+        let mut upper = V::Scalar::infinity();
+        // NaN proves nothing.
+        if !(distance > error) {
+            let epsilon = V::Scalar::EPSILON.as_f64();
+            let leaning = boxes.leaning(facet, array(normal), errors, epsilon);
+            upper = distance + error + Scalar::from_f64(leaning);
+            if !(upper < Scalar::ZERO && boxes.is_pierced(facet, -distance.as_f64(), uncertainty.length().as_f64())) {
+                return None;
+            }
+        }
+        Some([distance, error, upper])
+    }
 }
 
 impl<V: Vector> Block<V> {
@@ -109,7 +215,7 @@ impl<V: Vector> Block<V> {
 impl Boxes {
     /// The boxes of two bodies, together of the given size, whose origins differ by `offset`.
     #[inline(always)]
-    pub(super) fn new<V: Vector>(
+    fn new<V: Vector>(
         [first, second]: &[Block<V>; 2],
         (a, b): (&Moved<'_, V>, &Moved<'_, V>),
         offset: V,
@@ -146,7 +252,7 @@ impl Boxes {
 
     /// What spans the highest facet; `None` where edges are so nearly parallel that it may be one of theirs.
     #[inline(always)]
-    pub(super) fn highest(&self) -> Option<FacetEdges> {
+    fn highest(&self) -> Option<FacetEdges> {
         let (u, w) = ([self.unit(0), self.unit(1), self.unit(2)], [self.unit(3), self.unit(4), self.unit(5)]);
         let (h, k) = (&self.halves[..3], &self.halves[3..]);
         // In coordinates along the edges of the first.
@@ -194,7 +300,7 @@ impl Boxes {
 
     /// The facet that is spanned by two edges, on the side of zero.
     #[inline(always)]
-    pub(super) fn facet(&self, span: FacetEdges) -> BoxFacet {
+    fn facet(&self, span: FacetEdges) -> BoxFacet {
         let [i, j] = span;
         let Self { from, center, units: [x, y, z], halves } = self;
         let (first, second) = (self.unit(i), self.unit(j));
@@ -227,7 +333,7 @@ impl Boxes {
     /// Zero is `depth` behind the facet, and points of the difference are wrong by `error`, which is less. The other
     /// edges lead from the facet to the opposite one, `2H` behind it and aside of it by `2R` at most. So `s` behind it
     /// there is the same parallelogram, aside by `s·R/H` at most. Here `s` is eight times the depth.
-    pub(super) fn is_pierced(&self, facet: &BoxFacet, depth: f64, error: f64) -> bool {
+    fn is_pierced(&self, facet: &BoxFacet, depth: f64, error: f64) -> bool {
         let [i, j] = facet.span;
         let (mut behind, mut aside) = (0.0, 0.0);
         for k in (0..EDGES).filter(|&k| k != i && k != j) {
@@ -243,7 +349,7 @@ impl Boxes {
 
     /// How much higher than its lowest corner a facet may be along a unit vector near its normal: its edges lean, and
     /// are wrong by what a turn loses, or by no more than the points of their box.
-    pub(super) fn leaning(&self, facet: &BoxFacet, n: Vec3, errors: [f64; 2], epsilon: f64) -> f64 {
+    fn leaning(&self, facet: &BoxFacet, n: Vec3, errors: [f64; 2], epsilon: f64) -> f64 {
         let turned = TURNED * epsilon;
         let mut leaning = 0.0;
         for k in 0..EDGES {
@@ -261,6 +367,6 @@ impl Boxes {
 }
 
 /// Coordinates in the precision of the bodies.
-pub(super) fn vector<V: Vector>(v: Vec3) -> V {
+fn vector<V: Vector>(v: Vec3) -> V {
     V::from_fn(|i| V::Scalar::from_f64(v[i]))
 }

@@ -1,9 +1,8 @@
-//! The motion of what several joints carry, such as a link of a robot.
+//! The motion of what several joints carry, such as a link of a robot, and bounds on how fast, and how unevenly, its
+//! points may move, whatever the joint values are.
 
 use convex_support::{BoundingSphere, Matrix, Scalar, Vector};
-use num_traits::Float as _;
 
-use super::chain_bounds::Bounds;
 use super::rigid_motion::RigidMotion;
 use super::trajectory::{Displacement, Trajectory, TurningPlane};
 use crate::axial;
@@ -84,7 +83,8 @@ impl<V: Vector> Trajectory for ChainMotion<'_, V> {
                 whole.pivot = next.pivot;
             }
             // x ↦ p + s + (1 + T)(x − p) comes to p + s + s' + T'(p + s − p') + (1 + T')(1 + T)(x − p).
-            let arm = whole.pivot + whole.shift - next.pivot;
+            // The pivots first, so that no more is lost far from the world's origin than near it.
+            let arm = whole.pivot - next.pivot + whole.shift;
             let turned = next.turn * arm;
             let units = V::Scalar::EPSILON * V::Scalar::from_f64(4.0);
             reach += arm.norm() + next.shift.norm();
@@ -114,12 +114,125 @@ impl<V: Vector> Trajectory for ChainMotion<'_, V> {
     fn acceleration_along(
         &self,
         ball: BoundingSphere<V>,
-        TurningPlane { from, to }: TurningPlane<V>,
-        [start, end]: [V::Scalar; 2],
+        plane: TurningPlane<V>,
+        interval: [V::Scalar; 2],
     ) -> V::Scalar {
-        let bounds = self.bounds(ball, end);
-        let rate = if from == to { V::Scalar::ZERO } else { (to - from).norm() / (end - start) };
-        let longest = from.norm().max(to.norm());
-        V::Scalar::from_f64(2.0) * rate * bounds.speed.of(ball.radius) + longest * bounds.acceleration.of(ball.radius)
+        self.bounds(ball, interval[1]).along(plane, interval, ball.radius)
+    }
+}
+
+/// A bound for points at a distance `r` from the origin of the last joint that moves: `at_origin + per_length·r`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Linear<S> {
+    at_origin: S,
+    per_length: S,
+}
+
+/// Bounds on the first three derivatives, by time, of the place of a point along an edge, on which all joint values
+/// change at constant rates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds<S> {
+    pub(crate) speed: Linear<S>,
+    pub(crate) acceleration: Linear<S>,
+    pub(crate) jerk: Linear<S>,
+    /// The sum of the rates of the joints that turn: no angular velocity is larger.
+    pub(crate) spin: S,
+    /// How far a point may be from the origin of the joint that was taken last.
+    reach: Linear<S>,
+}
+
+impl<S: Scalar> Linear<S> {
+    const ZERO: Self = Self { at_origin: S::ZERO, per_length: S::ZERO };
+
+    pub(crate) fn of(self, r: S) -> S {
+        self.at_origin + self.per_length * r
+    }
+
+    fn plus(self, other: Self, factor: S) -> Self {
+        Self {
+            at_origin: self.at_origin + other.at_origin * factor,
+            per_length: self.per_length + other.per_length * factor,
+        }
+    }
+}
+
+/// Joints are taken from the last one on. Let `y` be a point as those so far have moved it, with the bounds `s`, `a` and
+/// `j`. A joint that turns at the rate `w` takes it to `R(wt)·y`, and the derivatives of a product are
+///
+/// > s′ = w·l + s,   a′ = w²·l + 2w·s + a,   j′ = w³·l + 3w²·s + 3w·a + j,
+///
+/// where `l` is the distance of `y` from the axis. A joint that slides adds its rate to `s` alone.
+impl<S: Scalar> Bounds<S> {
+    /// Of points that no joint moves.
+    pub(crate) const REST: Self = Self {
+        speed: Linear::ZERO,
+        acceleration: Linear::ZERO,
+        jerk: Linear::ZERO,
+        spin: S::ZERO,
+        reach: Linear { per_length: S::ONE, ..Linear::ZERO },
+    };
+
+    /// An upper bound of `2·r·ẋ + n·ẍ` for points within this distance, at any time, as of
+    /// [`Trajectory::acceleration_along`].
+    pub(crate) fn along<V: Vector<Scalar = S>>(&self, plane: TurningPlane<V>, [start, end]: [S; 2], r: S) -> S {
+        let TurningPlane { from, to } = plane;
+        let rate = if from == to { S::ZERO } else { (to - from).norm() / (end - start) };
+        S::from_f64(2.0) * rate * self.speed.of(r) + from.norm().max(to.norm()) * self.acceleration.of(r)
+    }
+
+    /// With the way from the origin of another joint to where it was measured from.
+    pub(crate) fn lengthen(&mut self, arm: S) {
+        self.reach.at_origin += arm;
+    }
+
+    /// With a joint that turns, from whose axis the one before is as far as this.
+    pub(crate) fn turn(&mut self, w: S, across: S) {
+        let (two, three) = (S::from_f64(2.0), S::from_f64(3.0));
+        let lever = Linear { at_origin: self.reach.at_origin + across, ..self.reach };
+        self.jerk = self.jerk.plus(self.acceleration, three * w).plus(self.speed, three * w * w).plus(lever, w * w * w);
+        self.acceleration = self.acceleration.plus(self.speed, two * w).plus(lever, w * w);
+        self.speed = self.speed.plus(lever, w);
+        self.spin += w;
+    }
+
+    /// With one that slides, by no more than `way`.
+    pub(crate) fn slide(&mut self, rate: S, way: S) {
+        self.speed.at_origin += rate;
+        self.lengthen(way);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::{DVec2, Vec2};
+
+    use super::{Bounds, ChainMotion};
+    use crate::{RigidMotion, Trajectory as _};
+
+    /// The way from joint to joint is short, however far away both are. If the pivot of one were added to how far it has
+    /// moved, and that of the next subtracted, the sum would have lost digits of the place, of which no error tells.
+    #[test]
+    fn joints_far_from_the_origin_lose_no_more_than_is_said() {
+        let (centers, rates) = ([(0.0, 0.0), (1.0, 0.25), (1.5, 1.0)], [0.75, 1.25, -0.5]);
+        let at = |i: usize, x: f64| DVec2::new(x + centers[i].0, centers[i].1);
+        let exact: [_; 3] = core::array::from_fn(|i| RigidMotion::rotation(rates[i], at(i, 0.0)));
+        let far: [_; 3] = core::array::from_fn(|i| RigidMotion::rotation(rates[i] as f32, at(i, 4096.0).as_vec2()));
+        let (exact, far) = (ChainMotion::new(&exact).displacement(1.0), ChainMotion::new(&far).displacement(1.0));
+        assert_eq!(far.pivot, Vec2::new(4096.0, 0.0) + exact.pivot.as_vec2());
+        let off = (far.shift.as_dvec2() - exact.shift).length();
+        assert!(off <= f64::from(far.shift_error), "{off} {}", far.shift_error);
+        assert!(far.shift_error < 1e-5, "{}", far.shift_error);
+    }
+
+    /// A point at the distance `r` from an axis that it turns about at the rate `w` is as fast as `w·r`, and its
+    /// acceleration and jerk are `w²·r` and `w³·r`; a joint that slides before adds its rate.
+    #[test]
+    fn bounds_of_one_turning_joint_are_those_of_a_circle() {
+        let mut bounds = Bounds::<f64>::REST;
+        bounds.turn(3.0, 0.0);
+        assert_eq!([bounds.speed.of(2.0), bounds.acceleration.of(2.0), bounds.jerk.of(2.0)], [6.0, 18.0, 54.0]);
+        assert_eq!(bounds.spin, 3.0);
+        bounds.slide(0.5, 0.0);
+        assert_eq!([bounds.speed.of(2.0), bounds.acceleration.of(2.0)], [6.5, 18.0]);
     }
 }

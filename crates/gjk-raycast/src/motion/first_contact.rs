@@ -9,10 +9,10 @@ use convex_support::numerics::range::is_comfortable;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::approach::Approach;
 use super::free_interval::acceleration_if_free;
-use super::instant::{Base, Instant, Limits, NEAR, Stage};
-use super::options::MotionCastOptions;
+use super::from_contact::{Base, Stage};
+use super::instant::{Approach, Instant, Limits, NEAR};
+use super::motion_cast::MotionCastOptions;
 use super::result::MotionIterate;
 use super::trajectory::TurningPlane;
 use crate::{Impact, Miss, MotionCast, Outcome, StartInContact, Status};
@@ -21,6 +21,13 @@ use crate::{Impact, Miss, MotionCast, Outcome, StartInContact, Status};
 pub(super) const AIM: f64 = 1.5;
 /// How often in a row the search for a contact may come nearer by less than half before it halves the interval.
 pub(super) const PATIENCE: u8 = 2;
+
+/// How much deeper than touching an overlap is looked for, in units of what the distance may be wrong by.
+const DEPTH: f64 = 2.0;
+
+/// How far apart again bodies are looked at after a graze, in units of how near to contact they were brought: that they
+/// have passed through one another takes some errors to show.
+const GRAZE: f64 = 16.0;
 
 /// The square of an angle, in radians, that is too far for a normal to have turned for a step to be like the one
 /// before.
@@ -90,8 +97,8 @@ impl<'p, V: Vector> Search<'p, V> {
         // Which way out is the shortest matters only to bodies that are to leave one another.
         let leaves = options.start_in_contact == StartInContact::IfDeeper;
         let limits = Limits { distance: infinity, depth: if leaves { infinity } else { zero } };
-        let near = bodies.at(zero, axis, limits);
-        let near = if near.gap > zero || near.is_close { near } else { bodies.closely(zero, axis, limits) };
+        let near = bodies.at(zero, axis, limits, false);
+        let near = if near.gap > zero || near.is_close { near } else { bodies.at(zero, axis, limits, true) };
         let measure = bodies.size() + near.distance.abs() + bodies.speed_at(&near);
         if !(measure == zero || is_in_range(measure)) {
             let (outcome, status) = (Outcome::Undecided, Status::Stalled);
@@ -168,6 +175,56 @@ impl<'p, V: Vector> Search<'p, V> {
         MotionEnd::Undecided(Status::IterationLimit)
     }
 
+    /// Where the contact is as near as can be told: looks for a time just after it at which the bodies overlap. `None`
+    /// where they are proved apart there, and the search goes on.
+    pub(super) fn close_in(&mut self) -> Option<MotionEnd<V>> {
+        let (zero, two) = (V::Scalar::ZERO, V::Scalar::from_f64(2.0));
+        let end = self.options.max_time.min(self.upper);
+        let Instant { time, distance, upper, error, closing, .. } = self.near;
+        // Of what seems to overlap the distance is its own lower bound, and the other one tells how well it is known.
+        let error = if distance > zero { error } else { (upper - distance).max(self.bodies.size() * Scalar::EPSILON) };
+        let error = error.max(self.closest() * Scalar::from_f64(0.25));
+        let deep = distance.max(zero) + error * Scalar::from_f64(DEPTH);
+        // As fast as it closes, or after the time that it would take to come so deep from rest.
+        let (at_speed, from_rest) = (deep / closing, (two * deep / self.acceleration.max(zero)).sqrt());
+        let mut step = if closing > zero && at_speed < from_rest { at_speed } else { from_rest };
+        while self.looks < self.options.max_iterations {
+            let next = (time + step).max(next_after(time)).min(end);
+            if !(next > time) {
+                return Some(MotionEnd::Undecided(Status::Stalled));
+            }
+            if next >= self.upper {
+                return Some(MotionEnd::Contact);
+            }
+            let there = self.look(next, Limits { distance: V::Scalar::infinity(), depth: zero });
+            if there.overlaps() {
+                self.upper = there.time;
+                return Some(MotionEnd::Contact);
+            }
+            if there.gap > zero {
+                if self.advance_to(&there) {
+                    self.beyond = None;
+                    return None;
+                }
+                if self.base.stage == Stage::Apart && self.bodies.pass_through(&self.near, there.time) {
+                    self.upper = there.time;
+                    return Some(MotionEnd::Contact);
+                }
+                // They are apart again after a graze that nobody can tell from a contact.
+                if there.gap > self.closest() * V::Scalar::from_f64(GRAZE) && there.closing <= zero {
+                    return Some(MotionEnd::Undecided(Status::Stalled));
+                }
+            }
+            if next >= end {
+                // The end belongs to the motion.
+                let touches = there.distance <= zero && end == self.options.max_time;
+                return Some(if touches { MotionEnd::Contact } else { MotionEnd::Undecided(Status::Stalled) });
+            }
+            step *= two;
+        }
+        Some(MotionEnd::Undecided(Status::IterationLimit))
+    }
+
     /// Goes on to a time at which the bodies are apart, if they are proved to be so until then; if not, that is
     /// remembered.
     pub(super) fn advance_to(&mut self, there: &Instant<V>) -> bool {
@@ -233,7 +290,7 @@ impl<'p, V: Vector> Search<'p, V> {
             self.beyond = self.beyond.filter(|beyond| beyond.is_close);
             return self.look(time, limits);
         }
-        let there = self.bodies.at(time, self.expected_normal(time), limits);
+        let there = self.bodies.at(time, self.expected_normal(time), limits, false);
         self.looks += 1;
         self.show(&there);
         there
@@ -251,7 +308,7 @@ impl<'p, V: Vector> Search<'p, V> {
         if self.base.stage != Stage::Apart {
             limits = Limits { distance: V::Scalar::infinity(), depth: V::Scalar::infinity() };
         }
-        let there = self.bodies.closely(time, axis, limits);
+        let there = self.bodies.at(time, axis, limits, true);
         self.looks += 1;
         self.show(&there);
         self.measured(there)
@@ -281,7 +338,7 @@ impl<'p, V: Vector> Search<'p, V> {
             MotionEnd::Contact => {
                 let time = self.time_of_contact().min(self.upper).min(self.options.max_time);
                 let (point, normal) = if !self.near.overlaps() {
-                    (point + self.bodies.velocity_of_b(near, point) * (time - near), Some(normal))
+                    (point + self.bodies.velocities(near, point)[1] * (time - near), Some(normal))
                 } else if self.options.start_in_contact == StartInContact::Report {
                     (self.bodies.common_point(&self.near), None)
                 } else {
@@ -294,4 +351,9 @@ impl<'p, V: Vector> Search<'p, V> {
         let status = status.of(&outcome, upper < V::Scalar::infinity());
         MotionCast { outcome, lower, upper, status, iterations }
     }
+}
+
+/// The next larger number of a time, or a little more.
+fn next_after<S: Scalar>(time: S) -> S {
+    (time + time.abs() * S::EPSILON).max(time + S::min_positive_value())
 }

@@ -30,8 +30,8 @@
 
 use convex_support::{Scalar, Vector};
 
-use super::approach::Approach;
-use super::instant::{Base, Instant};
+use super::from_contact::Base;
+use super::instant::{Approach, Instant};
 use super::trajectory::TurningPlane;
 
 /// What may be lost to rounding where both sides of the condition are computed.

@@ -18,15 +18,48 @@
 //! move along it, but across. So a flat `Z` will also do: the hull of the ball and points `±L·e` across the normal `n`.
 //! If these are in `C`, which is whether the bodies overlap with one of them shifted, it is enough that `E(n) ≤ 2d`,
 //! and that `E ≤ √2·L` across, since the larger of `d` and `L·|m·e|` is more than their mean.
+//!
+//! # Bodies without an inside
+//! They may pass through one another, as a point through a plate or a rod across a rod. The difference of such bodies has no inside either: they never overlap by more than rounding, and touch at one time
+//! only, which nobody can name to the last bit. That they have touched is certain all the same. Let `w(t)` be corners
+//! of the difference, each between two points that stay with their bodies, as many as there are dimensions, and look at
+//! them along a fixed unit vector `n`. As long as zero is seen within the triangle of the corners (in 2D between two
+//! corners), the line through zero along `n` pierces the triangle at one height `s(t)`, which is continuous. If it is
+//! positive at the beginning and negative at the end, it has been zero in between, and there zero was a point of the
+//! triangle, and so of the difference.
+//!
+//! How the corners are seen in between is known by how far they move at most. A component of their path whose second
+//! derivative is at most `m` in amount is off its chord by at most `m·τ²/8`, with `τ` the duration.
 
+use convex_support::numerics::elementary::hypot;
 use convex_support::{Posed, Scalar, Vector};
+use num_traits::Float as _;
 
-use super::instant::Instant;
+use super::instant::{Approach as _, Instant};
 use super::moving_pair::MovingPair;
+use super::near_look::Corners;
+use super::placed::Placed;
+use super::rough_look::times;
+use super::trajectory::TurningPlane;
 use crate::SignedDistanceOptions;
+use crate::body::Pair;
+use crate::gjk::{Frame, Gjk, GjkOptions, gjk, rounding};
+use crate::observer::Observer;
 use crate::shape::WithoutLines;
 use crate::signed_distance::signed_distance_of_any;
-use crate::symmetric::axes_across;
+use crate::simplex::MAX_POINTS;
+use crate::symmetric::{Across, axes_across, cross, dot};
+use crate::unit::{is_moderate, length_bound};
+
+/// What corners are wrong by, in units of what the pair says of its support points: they were turned back and forth
+/// beside that.
+const ERRORS: f64 = 4.0;
+
+/// Corners as seen along a unit vector: across it, and how high they are.
+struct SeenCorners<S> {
+    at: [Across<S>; MAX_POINTS],
+    heights: [S; MAX_POINTS],
+}
 
 impl<V: Vector> MovingPair<'_, V> {
     /// Whether the bodies, which overlap by `depth` at least at two times, certainly have a point in common at all
@@ -60,5 +93,118 @@ impl<V: Vector> MovingPair<'_, V> {
         let there = signed_distance_of_any(&WithoutLines(&a), &WithoutLines(&placed.b), options);
         self.count(there.iterations);
         there.upper < Scalar::ZERO
+    }
+
+    /// Whether the bodies, which a plane separates at the time of `near`, certainly have a point in common at some time
+    /// until the given one, because they have passed through one another.
+    #[cold]
+    #[inline(always)]
+    pub(super) fn have_met(&self, near: &Instant<V>, time: V::Scalar) -> bool {
+        let (from, to) = (self.placed(near.time), self.placed(time));
+        let Some(corners) = self.closest_corners(&from, near.normal) else { return false };
+        let (before, after) = (corners.at(&from).points, corners.at(&to).points);
+        let dimension = V::DIM;
+        if !before[..dimension].iter().chain(&after[..dimension]).all(|corner| corner.is_finite()) {
+            return false;
+        }
+        let error = (error_of(&from) + error_of(&to)) * Scalar::from_f64(ERRORS);
+        let mut moved = error + self.off_chord([near.time, time]);
+        for (&before, &after) in before.iter().zip(&after).take(dimension) {
+            moved += length_bound(after - before);
+        }
+        let seen_before = SeenCorners::along(near.normal, &before);
+        let seen_after = SeenCorners::along(near.normal, &after);
+        // Wherever the corners are in between, each is seen no farther than this from where it was.
+        let is_seen_within = seen_before.room::<V>() > moved;
+        let (height, lost) = seen_after.height_at_zero::<V>();
+        // NaN is no proof.
+        is_seen_within && near.gap > Scalar::ZERO && height < -(error + lost)
+    }
+
+    /// Corners of the difference whose face is nearest to zero, as many as there are dimensions.
+    fn closest_corners(&self, placed: &Placed<'_, V>, axis: V) -> Option<Corners<V>> {
+        let mut pair = Pair::new(placed);
+        let size = pair.size(placed.offset);
+        // What has a radius has an inside.
+        if pair.radius() > Scalar::ZERO || !is_moderate(size) {
+            return None;
+        }
+        let frame = Frame::new(&mut pair, placed.offset, size);
+        let mut state = Gjk::new(axis);
+        let options = GjkOptions::new(axis, SignedDistanceOptions::<V>::new().max_iterations);
+        let _ = gjk(&mut state, &mut pair, frame, options, None, &mut Observer::none());
+        self.count(state.iterations);
+        state.ensure_measured();
+        let mut corners = Corners::none();
+        corners.keep(state.simplex.weighted().map(|(_, corner)| times(corner, frame.scale)), placed);
+        (state.simplex.points().len() == V::DIM).then_some(corners)
+    }
+
+    /// How far a point of the difference may be off the chord of its path: the amount of each coordinate's second
+    /// derivative is bounded along both directions of its axis.
+    fn off_chord(&self, [from, to]: [V::Scalar; 2]) -> V::Scalar {
+        let most = |n: V| self.acceleration_along(TurningPlane { from: n, to: n }, [from, to]);
+        let mut m = V::Scalar::ZERO;
+        for axis in (0..V::DIM).map(V::axis) {
+            // One of them may be negative.
+            m += most(axis).abs() + most(-axis).abs();
+        }
+        // Of all coordinates, and with a margin for rounding: 1/8 < 1/4.
+        m * (to - from) * (to - from) * Scalar::from_f64(0.25)
+    }
+}
+
+/// What a point of the difference is wrong by.
+fn error_of<V: Vector>(placed: &Placed<'_, V>) -> V::Scalar {
+    let pair = Pair::new(placed);
+    rounding(pair.size(placed.offset)) + pair.error()
+}
+
+impl<S: Scalar> SeenCorners<S> {
+    fn along<V: Vector<Scalar = S>>(n: V, points: &[V; MAX_POINTS]) -> Self {
+        let [e, f] = axes_across(n);
+        Self { at: points.map(|p| (e.dot(p), f.dot(p))), heights: points.map(|p| n.dot(p)) }
+    }
+
+    /// The distance of zero from the boundary of what is seen, if it is seen within; else zero or less.
+    ///
+    /// If no corner is seen farther from where it is than that, zero is still seen within: else it would have left by
+    /// one side, whose ends would both have come at least so far towards it.
+    fn room<V: Vector<Scalar = S>>(&self) -> S {
+        let at = &self.at;
+        if V::DIM == 2 {
+            let (p, q) = (at[0].0, at[1].0);
+            return p.max(q).min(-p.min(q));
+        }
+        let height = |i: usize, j: usize| {
+            let edge = (at[j].0 - at[i].0, at[j].1 - at[i].1);
+            cross(at[i], at[j]) / hypot(edge.0, edge.1)
+        };
+        let heights = [height(0, 1), height(1, 2), height(2, 0)];
+        let most = heights.into_iter().fold(S::neg_infinity(), S::max);
+        let least = heights.into_iter().fold(S::infinity(), S::min);
+        // Clockwise all are negative.
+        least.max(-most)
+    }
+
+    /// The height at which the line through zero pierces the triangle or segment, which zero is seen within, and what
+    /// products and quotients lose of it.
+    ///
+    /// With `H` the greatest of the heights, the parts of a segment are right to a few ε, so that `8·ε·H` is lost at
+    /// most. An area is wrong by `2·ε·L²`, with `L` how far the corners are seen from zero, and three of them change
+    /// the height by `12·ε·H·L²/area` and as much as before.
+    fn height_at_zero<V: Vector<Scalar = S>>(&self) -> (S, S) {
+        let (at, heights) = (&self.at, &self.heights);
+        let epsilon = S::EPSILON * S::from_f64(16.0);
+        let greatest = heights[..V::DIM].iter().fold(S::ZERO, |most, height| most.max(height.abs()));
+        if V::DIM == 2 {
+            let (p, q) = (at[0].0, at[1].0);
+            return ((heights[0] * q - heights[1] * p) / (q - p), epsilon * greatest);
+        }
+        let areas = [cross(at[1], at[2]), cross(at[2], at[0]), cross(at[0], at[1])];
+        let sum = areas[0] + areas[1] + areas[2];
+        let height = (heights[0] * areas[0] + heights[1] * areas[1] + heights[2] * areas[2]) / sum;
+        let farthest = at[..3].iter().fold(S::ZERO, |most, &corner| most.max(dot(corner, corner)));
+        (height, epsilon * greatest * (S::ONE + farthest / sum.abs()))
     }
 }

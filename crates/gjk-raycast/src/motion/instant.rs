@@ -1,7 +1,10 @@
-//! What is known of two moving bodies at one time.
+//! What the search for a first contact asks of two moving bodies, and what is known of them at one time.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
+
+use super::trajectory::TurningPlane;
+use crate::unit::length_bound;
 
 /// A step may change the distance by what the closing speeds do not foretell, but for this part of what they have
 /// changed.
@@ -15,10 +18,6 @@ pub(super) const IN_PLANE: f64 = 4.0;
 
 /// The direction of closest points that are apart by this part of the size of both bodies is known to rounding.
 pub(super) const LONG: f64 = 1.0 / 16.0;
-
-/// How much lower than contact a level may be where bodies touch, in units of what their places are rounded by at the
-/// time.
-pub(super) const ROUNDED: f64 = 6.0;
 
 /// What is known of the pair at one time.
 #[derive(Clone, Copy, Debug)]
@@ -74,75 +73,53 @@ pub(super) struct Limits<S> {
     pub(super) depth: S,
 }
 
-/// From where distances are measured.
-#[derive(Clone, Copy)]
-pub(super) struct Base<S> {
-    /// The signed distance that counts as contact, but for how the bodies' places are [rounded](Self::loose).
-    pub(super) level: S,
-    pub(super) stage: Stage,
-    /// The signed distance at the start, what it certainly is not more than, and by how much that is more than what it
-    /// certainly is not less than.
-    pub(super) start: S,
-    pub(super) highest: S,
-    pub(super) width: S,
-    pub(super) slack: S,
-    /// When the bodies came to the surface.
-    pub(super) since: S,
-    /// The tolerance that was asked for. A start in contact is as near as the slack, and that of what follows from it
-    /// is none.
-    pub(super) tolerance: S,
-}
+/// Two bodies, `a` and `b`, in motion: how far apart they are at any time, and how unevenly that may change in between.
+pub(super) trait Approach<V: Vector> {
+    /// A bound on the size of both bodies together.
+    fn size(&self) -> V::Scalar;
 
-/// What the bodies have done so far.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Stage {
-    /// They have been apart, or a contact counts whatever was before.
-    Apart,
-    /// They have touched from the start on, to rounding.
-    Touching,
-    /// They have overlapped from the start on, and have not been less deep.
-    Deep,
-    /// They overlap, less deep than they began.
-    Risen,
-    /// They overlapped, and touch, to rounding: they may have been apart, or not.
-    Surfaced,
-}
+    /// The support points computed of each body so far.
+    fn iterations(&self) -> usize;
 
-impl<S: Scalar> Base<S> {
-    /// Where contact is what counts.
-    pub(super) const CONTACT: Self = {
-        let zero = S::ZERO;
-        Self {
-            level: zero,
-            stage: Stage::Apart,
-            start: zero,
-            highest: zero,
-            width: zero,
-            slack: zero,
-            since: zero,
-            tolerance: zero,
-        }
-    };
+    /// The direction from `b` to `a` at the start, as far as it can be told without looking; of any length.
+    fn between(&self) -> V;
 
-    /// How much lower the level is, in units of what the places of the bodies are rounded by at the time.
-    pub(super) fn loose(&self) -> S {
-        let is_exact = matches!(self.stage, Stage::Apart | Stage::Risen);
-        if is_exact { S::ZERO } else { S::from_f64(ROUNDED) }
+    /// The bodies at a time, looked at first along `axis`: as well as it can be known, or roughly where they are well
+    /// apart and are not to be looked at closely.
+    fn at(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>, is_close: bool) -> Instant<V>;
+
+    /// How far apart the plane across a unit vector keeps the bodies at a time, and what that is wrong by at most.
+    fn level(&self, time: V::Scalar, normal: V) -> (V::Scalar, V::Scalar);
+
+    /// An upper bound of the second derivative, throughout an interval, of the distance of any point of `a` from any
+    /// point of `b` along a normal that changes at a constant rate.
+    fn acceleration_along(&self, plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar;
+
+    /// Whether balls around the bodies, which move at constant velocities, stay apart throughout an interval, which may
+    /// be infinite; then the direction from `b` to `a` where they are closest.
+    fn stays_far_apart(&self, interval: [V::Scalar; 2]) -> Option<V>;
+
+    /// Whether the bodies, which overlap by `depth` at least at two times, certainly have a point in common at all
+    /// times between.
+    fn stay_in_contact(&self, from: &Instant<V>, to: &Instant<V>, depth: V::Scalar) -> bool;
+
+    /// The velocities, at a time, of the points of both that are at `point` then.
+    fn velocities(&self, time: V::Scalar, point: V) -> [V; 2];
+
+    /// The speed of the closest points against one another, where they are.
+    fn speed_at(&self, there: &Instant<V>) -> V::Scalar {
+        let [a, b] = self.velocities(there.time, there.point);
+        length_bound(a) + length_bound(b)
     }
 
-    /// Whether the bodies are to stay in contact until they are seen to part.
-    pub(super) fn overlaps(&self) -> bool {
-        matches!(self.stage, Stage::Deep | Stage::Risen)
+    /// Whether bodies that a plane separates at the time of `near` certainly have a point in common at some time until
+    /// the given one, because they have no inside and have passed through one another.
+    fn pass_through(&self, _near: &Instant<V>, _time: V::Scalar) -> bool {
+        false
     }
-}
 
-/// How closely bodies are to be looked at.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Closeness {
-    /// Roughly, even where they are nearly in contact.
-    Rough,
-    /// Roughly, but closely where they are nearly in contact.
-    AsNear,
-    /// Closely.
-    Close,
+    /// A point in both bodies, which overlap at a time.
+    fn common_point(&self, there: &Instant<V>) -> V {
+        there.point
+    }
 }

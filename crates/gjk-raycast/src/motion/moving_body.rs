@@ -3,7 +3,7 @@
 use convex_support::{AngularVelocity, BoundingSphere, Core, Matrix, Scalar, Spin, Vector};
 use num_traits::Float;
 
-use super::moved::Moved;
+use super::placed::Moved;
 use super::rigid_motion::{RigidMotion, SpinOf, turn_error};
 use super::trajectory::{MovingBall, Trajectory, TurningPlane};
 use crate::shape::Shape;

@@ -6,16 +6,14 @@ use convex_support::numerics::range::is_comfortable;
 use convex_support::{Hint, Scalar, Vector};
 use num_traits::Float;
 
-use super::approach::Approach;
 use super::boxes::{Block, FacetEdges};
-use super::corners::Corners;
-use super::instant::{Closeness, Instant, Limits};
-use super::motion_cast::FullMotion;
+use super::instant::{Approach, Instant, Limits};
+use super::motion_cast::{FullMotion, MotionCastOptions};
 use super::moving_body::MovingBody;
-use super::options::MotionCastOptions;
+use super::near_look::Corners;
 use super::placed::Placed;
 use super::trajectory::{Trajectory, TurningPlane};
-use crate::body::{Pair, Shapes, TracedSupport as _};
+use crate::body::{Pair, PointPair, Shapes, TracedSupport as _};
 use crate::extra::Extra;
 use crate::gjk::rounding;
 use crate::signed_distance::rough_signed_distance;
@@ -88,6 +86,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         let magnitude = length_bound(between.abs() + shifts.abs() + swings.abs());
         let rounding = V::Scalar::from_f64(1.5) * V::Scalar::EPSILON * magnitude;
         Placed {
+            time,
             shapes: self.shapes,
             hints: &self.hints,
             a: self.a.moved(&a, offset, rounding + (a.error + b.error)),
@@ -103,45 +102,28 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         (self.extra.get()?.by_boxes)(self, time, self.boxes.as_ref()?, axis, limits, is_close)
     }
 
-    /// The bodies at a time, whose closest points are not known in closed form.
+    /// The bodies at a time, of which neither closed form tells enough: roughly, by what was closest at the last look,
+    /// or by their signed distance.
     #[inline(never)]
-    fn by_search(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
-        if let Some(known) = self.by_facets(time, axis, limits, false) {
-            return known;
-        }
+    fn by_search(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>, is_rough: bool) -> Instant<V> {
         let placed = self.placed(time);
-        let there = self.roughly(time, &placed, axis, limits.distance);
-        there.unwrap_or_else(|| self.closely_placed(time, &placed, axis, limits))
-    }
-
-    /// The bodies where they are at a time, by what was closest at the last look, or by their signed distance.
-    fn closely_placed(
-        &self,
-        time: V::Scalar,
-        placed: &Placed<'_, V>,
-        axis: V,
-        limits: Limits<V::Scalar>,
-    ) -> Instant<V> {
+        if is_rough && let Some(there) = self.roughly(&placed, axis, limits.distance) {
+            return there;
+        }
         let is_depth_asked = limits.depth > Scalar::ZERO;
-        let known = if is_depth_asked { None } else { self.near_look(time, placed, axis) };
-        known.unwrap_or_else(|| self.by_signed_distance(time, placed, axis, limits))
+        let known = if is_depth_asked { None } else { self.near_look(&placed, axis) };
+        known.unwrap_or_else(|| self.by_signed_distance(&placed, axis, limits))
     }
 
     /// The bodies where they are at a time, by their signed distance.
     #[inline(never)]
-    fn by_signed_distance(
-        &self,
-        time: V::Scalar,
-        placed: &Placed<'_, V>,
-        axis: V,
-        limits: Limits<V::Scalar>,
-    ) -> Instant<V> {
+    fn by_signed_distance(&self, placed: &Placed<'_, V>, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
         let wanted =
             SignedDistanceOptions::new().with_axis(axis).with_limit(limits.distance).with_depth_limit(limits.depth);
         let answer = rough_signed_distance(placed, wanted, self.extra.part(|extra| extra.closer));
         self.count(answer.iterations);
         let (point_a, point) = (answer.point_a + placed.place, answer.point_b + placed.place);
-        let (normal, distance) = (answer.normal, answer.signed_distance);
+        let (time, normal, distance) = (placed.time, answer.normal, answer.signed_distance);
         Instant {
             time,
             normal,
@@ -153,6 +135,23 @@ impl<'s, V: Vector> MovingPair<'s, V> {
             point,
             is_close: true,
         }
+    }
+
+    /// The bodies where they are at a time, seen from afar: a plane across a unit vector, between points of the cores,
+    /// relative to their origins, keeps them as far apart as the given distance, which is wrong by an error.
+    #[inline(always)]
+    pub(super) fn across(
+        &self,
+        &Placed { time, offset, place, .. }: &Placed<'_, V>,
+        normal: V,
+        points: PointPair<V>,
+        [distance, error]: [V::Scalar; 2],
+    ) -> Instant<V> {
+        let point_a = place + offset + points.a - normal * self.a.core.radius;
+        let point = place + points.b + normal * self.b.core.radius;
+        let closing = self.closing(time, normal, [point_a, point]);
+        let (gap, upper) = (distance - error, Float::infinity());
+        Instant { time, normal, gap, distance, upper, error, closing, point, is_close: false }
     }
 
     /// How fast points of both bodies come nearer to one another along a normal.
@@ -176,22 +175,13 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
     }
 
     #[inline(always)]
-    fn at(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
-        if !self.knows_points {
-            return self.by_search(time, axis, limits);
-        }
-        let closeness = if limits.depth > Scalar::ZERO { Closeness::Rough } else { Closeness::AsNear };
-        let there = self.by_closest_points(time, axis, closeness);
-        there.unwrap_or_else(|| self.by_signed_distance(time, &self.placed(time), axis, limits))
-    }
-
-    fn closely(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
+    fn at(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>, is_close: bool) -> Instant<V> {
         let known = match self.knows_points {
-            _ if limits.depth > Scalar::ZERO => None,
-            true => self.by_closest_points(time, axis, Closeness::Close),
-            false => self.by_facets(time, axis, limits, true),
+            _ if is_close && limits.depth > Scalar::ZERO => None,
+            true => self.by_closest_points(time, axis, limits, is_close),
+            false => self.by_facets(time, axis, limits, is_close),
         };
-        known.unwrap_or_else(|| self.closely_placed(time, &self.placed(time), axis, limits))
+        known.unwrap_or_else(|| self.by_search(time, axis, limits, !(is_close || self.knows_points)))
     }
 
     fn level(&self, time: V::Scalar, normal: V) -> (V::Scalar, V::Scalar) {
@@ -237,9 +227,8 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
         self.extra.get().is_some_and(|extra| (extra.keep_in_contact)(self, from, to, depth))
     }
 
-    fn speed_at(&self, there: &Instant<V>) -> V::Scalar {
-        let Instant { time, point, .. } = *there;
-        length_bound(self.a.velocity(time, point)) + length_bound(self.b.velocity(time, point))
+    fn velocities(&self, time: V::Scalar, point: V) -> [V; 2] {
+        [self.a.velocity(time, point), self.b.velocity(time, point)]
     }
 
     fn pass_through(&self, near: &Instant<V>, time: V::Scalar) -> bool {
@@ -256,9 +245,5 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
         let answer = distance(&placed.a, &placed.b, wanted);
         self.count(answer.iterations);
         answer.point_b + placed.place
-    }
-
-    fn velocity_of_b(&self, time: V::Scalar, point: V) -> V {
-        self.b.velocity(time, point)
     }
 }

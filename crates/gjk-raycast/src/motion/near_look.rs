@@ -1,44 +1,187 @@
-//! A look at two bodies nearly in contact, by what was closest at the last look.
+//! Looks at two moving bodies by points that are known to be closest, or were so at the last look.
 //!
-//! Near contact the same corners are mostly closest as a moment ago. Then a plane across them is known, and one support
-//! point proves that it separates the bodies. Where they overlap, the closest points of their cores prove that if they
-//! are nearer than the radii; and of cores that overlap themselves, a simplex of the corners and the point of the
-//! difference farthest from them has zero inside.
+//! Of balls and capsules the closest points of the cores are known in closed form. One support point proves that a plane
+//! between the points keeps the bodies apart. Far from contact that is all. Near contact the same point tells the
+//! distance as well as it can be known; and where the bodies overlap but their cores do not, the points prove that.
+//!
+//! Of other bodies the same corners are mostly closest near contact as a moment ago. Then a plane across them is known,
+//! and one support point proves that it separates the bodies. Where they overlap, the closest points of their cores prove
+//! that if they are nearer than the radii; and of cores that overlap themselves, a simplex of the corners and the point
+//! of the difference farthest from them has zero inside.
 
-use convex_support::{Scalar, Vector};
-use num_traits::Float as _;
+use convex_support::{Scalar, SupportMap as _, Vector};
+use num_traits::Float;
 
-use super::corners::CornerFace;
-use super::instant::{IN_PLANE, Instant, LONG};
+use super::instant::{IN_PLANE, Instant, LONG, Limits, NEAR};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
-use crate::body::{Pair, PointPair};
-use crate::separation::Cores;
-use crate::separation::across_corners;
+use crate::body::{Pair, PointPair, TracedSupport as _};
+use crate::gjk::rounding;
+use crate::separation::{Cores, Uncertainty, across_corners, slack};
 use crate::simplex::{MAX_POINTS, project};
 use crate::unit::is_moderate;
 
-/// What may have been closest, lengths in the world's unit.
-struct PlaneBetween<V: Vector> {
-    /// Points of the cores, each relative to its body's origin, and the vector between them.
-    points: PointPair<V>,
-    v: V,
-    /// The unit vector across the plane between them.
-    unit: V,
+/// Corners of both cores, each relative to its body's origin and turned back to time 0.
+#[derive(Clone, Copy)]
+pub(super) struct Corners<V> {
+    pairs: [PointPair<V>; MAX_POINTS],
+    len: usize,
+}
+
+/// Corners where the bodies are at a time: the face of them that has their point closest to zero.
+pub(super) struct CornerFace<V: Vector> {
+    /// Those of the difference; zero beyond the last.
+    pub(super) points: [V; MAX_POINTS],
+    pairs: [PointPair<V>; MAX_POINTS],
+    pub(super) weights: [V::Scalar; MAX_POINTS],
+    len: usize,
+    /// The closest point.
+    pub(super) v: V,
+}
+
+impl<V: Vector> Corners<V> {
+    /// No corner.
+    pub(super) fn none() -> Self {
+        Self { pairs: [PointPair::default(); MAX_POINTS], len: 0 }
+    }
+
+    /// Takes the given corners, where the bodies are at a time, instead.
+    pub(super) fn keep(&mut self, corners: impl Iterator<Item = PointPair<V>>, Placed { a, b, .. }: &Placed<'_, V>) {
+        self.len = 0;
+        for (to, corner) in self.pairs.iter_mut().zip(corners) {
+            *to = PointPair { a: a.before(corner.a), b: b.before(corner.b) };
+            self.len += 1;
+        }
+    }
+
+    /// Where they are at a time, and the corners of the difference that they make.
+    #[inline(always)]
+    pub(super) fn at(&self, Placed { a, b, offset, .. }: &Placed<'_, V>) -> CornerFace<V> {
+        let len = self.len.min(MAX_POINTS);
+        let (mut pairs, mut points) = ([PointPair::default(); MAX_POINTS], [V::ZERO; MAX_POINTS]);
+        for (i, kept) in self.pairs[..len].iter().enumerate() {
+            pairs[i] = PointPair { a: a.turned(kept.a), b: b.turned(kept.b) };
+            points[i] = pairs[i].a - pairs[i].b + *offset;
+        }
+        CornerFace { points, pairs, weights: [Scalar::ZERO; MAX_POINTS], len, v: V::ZERO }
+    }
+
+    /// The face closest to zero, where the bodies are at a time. Corners that leave the point closest to zero of their
+    /// hull outside are dropped, which finds a face that is near if not the nearest; `None` where no face is found.
+    #[inline(always)]
+    pub(super) fn closest_face(&self, placed: &Placed<'_, V>) -> Option<CornerFace<V>> {
+        let CornerFace { mut points, mut pairs, mut len, .. } = self.at(placed);
+        while len > 0 {
+            let foot = project(&points[..len], |corner| -corner);
+            let weights = foot.coordinates;
+            let is_inside = |i: usize| weights[i] > V::Scalar::ZERO;
+            if (0..len).all(is_inside) {
+                return Some(CornerFace { points, pairs, weights, len, v: -foot.across });
+            }
+            // One weight at least is not positive, or NaN.
+            let before = len;
+            len = 0;
+            for i in (0..before).filter(|&i| is_inside(i)) {
+                (points[len], pairs[len]) = (points[i], pairs[i]);
+                len += 1;
+            }
+        }
+        None
+    }
+}
+
+impl<V: Vector> CornerFace<V> {
+    /// The points of both cores that its closest point is made of.
+    #[inline(always)]
+    pub(super) fn closest_points(&self) -> PointPair<V> {
+        self.corners().zip(&self.weights).fold(PointPair::default(), |sum, ((_, pair), &weight)| sum.plus(pair, weight))
+    }
+
+    /// The corners, and what they are made of.
+    #[inline(always)]
+    pub(super) fn corners(&self) -> impl Iterator<Item = (V, PointPair<V>)> + '_ {
+        self.points.iter().copied().zip(self.pairs.iter().copied()).take(self.len)
+    }
+
+    /// The unit vector across the plane that it spans, towards `axis`.
+    fn unit_across(&self, axis: V) -> Option<V> {
+        let (normal, _) = if self.len == V::DIM { across_corners(&self.points) } else { return None };
+        let unit = normal.unit()?;
+        Some(if unit.dot(axis) < V::Scalar::ZERO { -unit } else { unit })
+    }
 }
 
 impl<V: Vector> MovingPair<'_, V> {
+    /// The pair at a time by the closest points of its cores; `None` where they do not tell as much as is wanted. What
+    /// is seen closely is to be on the side of `axis`.
+    ///
+    /// All is compiled into one function, so that what is known of the bodies at the time need not be written to memory
+    /// and read again.
+    #[inline(never)]
+    pub(super) fn by_closest_points(
+        &self,
+        time: V::Scalar,
+        axis: V,
+        limits: Limits<V::Scalar>,
+        is_close: bool,
+    ) -> Option<Instant<V>> {
+        let placed = self.placed_here(time);
+        let mut pair = Pair::new(&placed);
+        let offset = placed.offset;
+        let size = pair.size(offset);
+        let points = pair.closest_points(offset, size)?;
+        let v = pair.vector_between(points, offset);
+        let length = v.length();
+        let unit = v / length;
+        // NaN is not apart.
+        if !(length > Scalar::ZERO) {
+            return None;
+        }
+        let (w, _) = pair.support(-unit);
+        self.count(1);
+        let (lower, radius) = (unit.dot(w + offset), pair.radius());
+        let distance = lower - radius;
+        let roughly = rounding(size) + pair.error();
+        if !is_close && distance > roughly * Scalar::from_f64(NEAR) {
+            return Some(self.across(&placed, unit, points, [distance, roughly]));
+        }
+        // Not where they have passed through one another.
+        let is_known = length > size * Scalar::from_f64(LONG) && unit.dot(axis) > Scalar::ZERO;
+        if !is_known || limits.depth > Scalar::ZERO {
+            return None;
+        }
+        // The origin of `b` is at zero, so that nothing is lost of their difference.
+        let known = Uncertainty::of_exact_offset([placed.a.rounding(), placed.b.rounding()], offset);
+        let error_along = known.along(unit);
+        let error = error_along + slack(lower, radius);
+        // NaN is not in the plane.
+        if !(unit.dot(v) - lower <= error * Scalar::from_f64(IN_PLANE)) {
+            return None;
+        }
+        let mut upper: V::Scalar = Float::infinity();
+        if !(distance > error) {
+            // Points of segments are rounded by a product and a sum more than support points.
+            let lost = V::Scalar::EPSILON * pair.extent();
+            upper = known.greatest_length(length, error_along) - radius + slack(length, radius) + lost;
+            if !(upper < Scalar::ZERO) {
+                return None;
+            }
+        }
+        Some(Instant { upper, is_close: true, ..self.across(&placed, unit, points, [distance, error]) })
+    }
+
     /// The bodies at a time as well as it can be known, if what was closest at the last look is so still, and proves
     /// that they are apart or overlap.
-    pub(super) fn near_look(&self, time: V::Scalar, placed: &Placed<'_, V>, axis: V) -> Option<Instant<V>> {
+    pub(super) fn near_look(&self, placed: &Placed<'_, V>, axis: V) -> Option<Instant<V>> {
         let pair = Pair::new(placed);
         let size = pair.size(placed.offset);
         if !is_moderate(size) {
             return None;
         }
         let face = self.closest.borrow().closest_face(placed)?;
-        let closest = PlaneBetween::new(face.closest_points(), face.v, size);
-        let PlaneBetween { points, v, unit } = closest.or_else(|| PlaneBetween::in_plane(&face, axis))?;
+        let (points, length) = (face.closest_points(), face.v.length());
+        let is_long = length > size * Scalar::from_f64(LONG);
+        let unit = if is_long { face.v / length } else { face.unit_across(axis)? };
         // Not where they have passed through one another.
         if !(unit.dot(axis) > Scalar::ZERO) {
             return None;
@@ -46,26 +189,18 @@ impl<V: Vector> MovingPair<'_, V> {
         let mut cores = Cores::new(placed, [pair.core_a, pair.core_b]);
         cores.sharpen();
         let (scale, radius) = (cores.scale(), cores.radius());
-        // As in an answer: the unit vector, the radii and the sums.
-        let slack = |length: V::Scalar| V::Scalar::EPSILON * Scalar::from_f64(3.0) * (length + radius);
         let lower = unit.dot(cores.support(-unit)?.point) * scale;
-        let error = cores.error_along(unit) * scale + slack(lower.abs());
+        let error = cores.error_along(unit) * scale + slack(lower, radius);
         // NaN is not in the plane.
-        let is_closest = unit.dot(v) - lower <= error * Scalar::from_f64(IN_PLANE);
+        let is_closest = unit.dot(face.v) - lower <= error * Scalar::from_f64(IN_PLANE);
         let distance = lower - radius;
         let mut upper = V::Scalar::infinity();
         if is_closest && !(distance > error) {
             upper = self.overlap_of_corners(&mut cores, &face, unit)?;
         }
         self.count(cores.iterations);
-        if !is_closest || !(distance > error || upper < Scalar::ZERO) {
-            return None;
-        }
-        let point_a = placed.place + placed.offset + points.a - unit * self.a.core.radius;
-        let point = placed.place + points.b + unit * self.b.core.radius;
-        let closing = self.closing(time, unit, [point_a, point]);
-        let gap = distance - error;
-        Some(Instant { time, normal: unit, gap, distance, upper, error, closing, point, is_close: true })
+        let is_known = is_closest && (distance > error || upper < Scalar::ZERO);
+        is_known.then(|| Instant { upper, is_close: true, ..self.across(placed, unit, points, [distance, error]) })
     }
 
     /// What the signed distance is certainly not more than, if the corners of a face prove that the bodies overlap;
@@ -76,7 +211,7 @@ impl<V: Vector> MovingPair<'_, V> {
     fn overlap_of_corners(&self, cores: &mut Cores<'_, V>, face: &CornerFace<V>, unit: V) -> Option<V::Scalar> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         let (scale, radius, dimension) = (cores.scale(), cores.radius(), V::DIM);
-        let (corners, len) = face.points();
+        let &CornerFace { points: corners, len, .. } = face;
         let mut points = [V::ZERO; MAX_POINTS];
         for (i, point) in points[..len].iter_mut().enumerate() {
             let mut direction = -unit;
@@ -97,30 +232,12 @@ impl<V: Vector> MovingPair<'_, V> {
                 sum += weight;
             }
             let length = cores.greatest_length(closest / sum) * scale;
-            return Some(length - radius + V::Scalar::EPSILON * Scalar::from_f64(3.0) * (length + radius));
+            return Some(length - radius + slack(length, radius));
         }
         if len != dimension {
             return Some(infinity);
         }
         points[len] = cores.support(unit)?.point;
         Some(-cores.room_within(&points[..=len]) * scale)
-    }
-}
-
-impl<V: Vector> PlaneBetween<V> {
-    /// Points that are apart by `v`, for bodies of the given size; `None` where that is too short to have a direction.
-    #[inline(always)]
-    fn new(points: PointPair<V>, v: V, size: V::Scalar) -> Option<Self> {
-        let length = v.length();
-        (length > size * Scalar::from_f64(LONG)).then(|| Self { points, v, unit: v / length })
-    }
-
-    /// The closest points of a face that spans a plane.
-    fn in_plane(face: &CornerFace<V>, axis: V) -> Option<Self> {
-        let (corners, len) = face.points();
-        let (normal, _) = if len == V::DIM { across_corners(&corners) } else { return None };
-        let unit = normal.unit()?;
-        let unit = if unit.dot(axis) < V::Scalar::ZERO { -unit } else { unit };
-        Some(Self { points: face.closest_points(), v: face.v, unit })
     }
 }

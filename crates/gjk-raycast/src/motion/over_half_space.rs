@@ -5,12 +5,10 @@ use core::cell::Cell;
 use convex_support::{Hint, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
-use super::approach::Approach;
 use super::first_contact::Search;
-use super::instant::{Instant, Limits};
-use super::motion_cast::{check, checked, linear_options, of_linear_cast};
+use super::instant::{Approach, Instant, Limits};
+use super::motion_cast::{MotionCastOptions, check, checked, linear_options, of_linear_cast};
 use super::moving_body::MovingBody;
-use super::options::MotionCastOptions;
 use super::result::MotionIterate;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::half_space::Plane;
@@ -90,7 +88,10 @@ compiled_once! {
         options: MotionCastOptions<V>,
         observer: &mut dyn FnMut(MotionIterate<V>),
     ) -> MotionCast<V> {
-        Search::run(&OverHalfSpace::new(shape, motion, half_space, options.target_distance), options, observer)
+        let margin = options.target_distance;
+        let (body, plane) = (MovingBody::new(shape, motion, margin), half_space.plane());
+        let (iterations, hint) = (Cell::new(0), Cell::new(Hint::new()));
+        Search::run(&OverHalfSpace { body, margin, plane, iterations, hint }, options, observer)
     }
 }
 
@@ -106,35 +107,13 @@ struct OverHalfSpace<'s, V: Vector> {
     hint: Cell<Hint>,
 }
 
-/// The body's lowest point at one time.
-struct LowestPoint<V: Vector> {
-    /// Its height over the half-space, less the target distance.
-    height: Level<V::Scalar>,
-    /// The point of its core, in the world.
-    core_point: V,
-}
-
-impl<'s, V: Vector> OverHalfSpace<'s, V> {
-    fn new(
-        shape: Shape<'s, V>,
-        motion: &'s dyn Trajectory<Vector = V>,
-        half_space: &HalfSpace<V>,
-        margin: V::Scalar,
-    ) -> Self {
-        Self {
-            body: MovingBody::new(shape, motion, margin),
-            margin,
-            plane: half_space.plane(),
-            iterations: Cell::new(0),
-            hint: Cell::new(Hint::new()),
-        }
-    }
-
-    /// The lowest point at a time.
+impl<V: Vector> OverHalfSpace<'_, V> {
+    /// How high the body's lowest point is over the half-space at a time, less the target distance, and the point of its
+    /// core, in the world.
     ///
-    /// Its height is that of the sum of the origin, what the motion adds to that, and the support point, so that a body
+    /// The height is that of the sum of the origin, what the motion adds to that, and the support point, so that a body
     /// far along the plane is known as well as any other.
-    fn lowest(&self, time: V::Scalar) -> LowestPoint<V> {
+    fn lowest(&self, time: V::Scalar) -> (Level<V::Scalar>, V) {
         let (origin, radius) = (self.body.core.origin, self.body.core.radius);
         let place = self.body.place(time);
         let (shift, turned) = (place.shift, place.swing);
@@ -147,7 +126,7 @@ impl<'s, V: Vector> OverHalfSpace<'s, V> {
         self.iterations.set(self.iterations.get() + 1);
         let error = self.plane.error_along(&moved.rounding());
         let height = self.plane.height([origin, shift, turned, point], error, radius);
-        LowestPoint { height, core_point: moved_origin + point }
+        (height, moved_origin + point)
     }
 }
 
@@ -164,12 +143,8 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
         self.plane.unit
     }
 
-    fn at(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
-        self.closely(time, axis, limits)
-    }
-
-    fn closely(&self, time: V::Scalar, _axis: V, _limits: Limits<V::Scalar>) -> Instant<V> {
-        let LowestPoint { height, core_point } = self.lowest(time);
+    fn at(&self, time: V::Scalar, _axis: V, _limits: Limits<V::Scalar>, _is_close: bool) -> Instant<V> {
+        let (height, core_point) = self.lowest(time);
         let unit = self.plane.unit;
         let point_a = core_point - unit * self.body.core.radius;
         // The point below, or of a body that is in the half-space its own lowest point.
@@ -189,7 +164,7 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
 
     /// The normal is that of the plane, whichever is asked for.
     fn level(&self, time: V::Scalar, _normal: V) -> (V::Scalar, V::Scalar) {
-        let Level { value, error } = self.lowest(time).height;
+        let (Level { value, error }, _) = self.lowest(time);
         (value, error)
     }
 
@@ -220,16 +195,7 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
         self.body.strays(self.plane.unit, [from.time, to.time]) <= depth * Scalar::from_f64(4.0)
     }
 
-    fn speed_at(&self, there: &Instant<V>) -> V::Scalar {
-        length_bound(self.body.velocity(there.time, there.point))
-    }
-
-    /// A half-space has an inside.
-    fn pass_through(&self, _: &Instant<V>, _: V::Scalar) -> bool {
-        false
-    }
-
-    fn velocity_of_b(&self, _time: V::Scalar, _point: V) -> V {
-        V::ZERO
+    fn velocities(&self, time: V::Scalar, point: V) -> [V; 2] {
+        [self.body.velocity(time, point), V::ZERO]
     }
 }

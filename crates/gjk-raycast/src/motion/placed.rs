@@ -1,15 +1,108 @@
-//! Two moving bodies where they are at a time.
+//! Shapes somewhere on their way, and two moving bodies where they are at a time.
 
 use core::cell::Cell;
 
-use convex_support::{Core, Hint, SupportMap as _, Vector};
+use convex_support::{Core, CoreKind, Feature, Hint, Matrix, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
-use super::moved::Moved;
 use crate::body::{Of, Shapes};
 use crate::shape::Shape;
 
+/// A shape turned by a rotation, whose origin is put where one wants it, and whose radius may be grown.
+pub(crate) struct Moved<'s, V: Vector> {
+    shape: Shape<'s, V>,
+    /// The rotation about the origin; `None` for a shape as it is.
+    rotation: Option<V::Matrix>,
+    core: Core<V>,
+    /// What moving the shape may have added to the error of its points, as a length.
+    error: V::Scalar,
+}
+
+impl<'s, V: Vector> Moved<'s, V> {
+    /// The shape with the given core, which may have another origin and another radius than its own, turned by
+    /// `rotation` about the origin. Moving it took its points where they should be but for `error`.
+    #[inline(always)]
+    pub(crate) fn new(shape: Shape<'s, V>, core: Core<V>, rotation: Option<V::Matrix>, error: V::Scalar) -> Self {
+        let Some(matrix) = rotation else {
+            let core = Core { error: core.error + error, ..core };
+            return Self { shape, rotation, core, error };
+        };
+        let kind = match core.kind {
+            CoreKind::Point(at) => CoreKind::Point(matrix * at),
+            CoreKind::Segment { middle, half } => CoreKind::Segment { middle: matrix * middle, half: matrix * half },
+            kind => kind,
+        };
+        // The length of an error stays. The product with the matrix is wrong by at most three ε of the extent, and so
+        // may be the support value along a direction that is turned.
+        let error = error + V::Scalar::from_f64(6.0) * Scalar::EPSILON * core.extent;
+        Self { shape, rotation, core: Core { kind, error: core.error + error, ..core }, error }
+    }
+
+    /// A vector of the shape as it is turned.
+    #[inline(always)]
+    pub(super) fn turned(&self, vector: V) -> V {
+        self.rotation.map_or(vector, |rotation| rotation * vector)
+    }
+
+    /// A vector of the turned shape as it was.
+    #[inline(always)]
+    pub(super) fn before(&self, vector: V) -> V {
+        self.rotation.map_or(vector, |rotation| rotation.transpose_mul(vector))
+    }
+}
+
+impl<V: Vector> SupportMap for Moved<'_, V> {
+    type Vector = V;
+
+    fn support(&self, direction: V) -> V {
+        let swept = direction.unit().unwrap_or_else(|| Vector::axis(0)) * self.core.radius;
+        self.core.origin + self.core_support(direction, &mut Hint::new()) + swept
+    }
+
+    #[inline]
+    fn core(&self) -> Core<V> {
+        self.core
+    }
+
+    #[inline(always)]
+    fn core_support(&self, direction: V, hint: &mut Hint) -> V {
+        self.turned(self.shape.core_support(self.before(direction), hint))
+    }
+
+    #[inline(always)]
+    fn core_support_hessian(&self, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
+        self.shape.core_support_hessian(self.before(direction), [self.before(changes[0]), self.before(changes[1])])
+    }
+
+    #[inline(always)]
+    fn core_closest_point(&self, x: V) -> Option<V> {
+        Some(self.turned(self.shape.core_closest_point(self.before(x))?))
+    }
+
+    fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
+        self.shape.core_support_feature(self.before(direction), slab, feature);
+        feature.map(|point| self.turned(point));
+    }
+
+    #[inline]
+    fn core_parallelotope(&self) -> Option<Parallelotope<V>> {
+        let Parallelotope { center, half_edges } = self.shape.core_parallelotope()?;
+        Some(Parallelotope { center: self.turned(center), half_edges: half_edges.map(|edge| self.turned(edge)) })
+    }
+
+    /// Of a shape that is turned the coordinates are no better known than the length.
+    fn rounding(&self) -> Rounding<V> {
+        if self.rotation.is_some() {
+            let Core { extent, error, .. } = self.core;
+            return Rounding { extent: Vector::splat(extent), error: Vector::splat(error), error_length: error };
+        }
+        let Rounding { extent, error, error_length } = self.shape.rounding();
+        Rounding { extent, error: error + Vector::splat(self.error), error_length: error_length + self.error }
+    }
+}
+
 /// Two bodies at one time; `b` has its origin at zero, which is `place` in the world.
 pub(super) struct Placed<'s, V: Vector> {
+    pub(super) time: V::Scalar,
     /// The shapes where they were, and what was found of them at the last time, which is mostly found again.
     pub(super) shapes: &'s dyn Shapes<Vector = V>,
     pub(super) hints: &'s Cell<[Hint; 2]>,

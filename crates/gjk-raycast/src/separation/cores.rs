@@ -176,7 +176,7 @@ fn greatest_length<S: Scalar>(length: S, error: S) -> S {
 /// What a signed distance in the world's unit loses: unit vectors are so to 2ε, and the sum of the radii and the two
 /// sums that the radii and the length go into round to half of that.
 #[inline(always)]
-pub(super) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
+pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
     S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
 }
 
