@@ -4,7 +4,10 @@ use convex_support::{LineQuery, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
 use crate::body::{CastBody, Measures, Single};
-use crate::cast::{Cast, CastHit, LocalRay, Part, RayOf, cast, certain, certain_closely, is_plain, settle_start, show};
+use crate::cast::{
+    Approach, Cast, CastHit, CastRay, LocalRay, Part, RayOf, cast, certain, certain_closely, is_plain, settle_start,
+    show,
+};
 use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::power_of_two_near;
@@ -124,8 +127,10 @@ compiled_once! {
         if options.min_lambda > Scalar::ZERO {
             return late(body, ray, *options, observer);
         }
-        let mut cast = cast(body, ray, Scalar::ZERO, Part::Whole, options, observer);
-        settle_start(&mut cast, shape, Scalar::ZERO, RayOf::Point(ray.source), ray.direction, options);
+        let mut cast = cast(body, CastRay::of(ray, Part::Whole), options, observer);
+        let b = RayOf::Point(ray.source);
+        let approach = Approach { a: shape, skin: Scalar::ZERO, b, direction: ray.direction };
+        settle_start(&mut cast, approach, options);
         answer(cast, ray)
     }
 }
@@ -151,7 +156,7 @@ fn late<V: Vector>(
     let slack = if begin <= options.max_lambda { error + error } else { zero };
     let mut from = |begin| {
         let wanted = options.with_max_lambda(options.max_lambda - begin);
-        answer(cast(body, ray, Scalar::ZERO, Part::From(begin), &wanted, observer), ray)
+        answer(cast(body, CastRay::of(ray, Part::From(begin)), &wanted, observer), ray)
     };
     let early = from(begin - slack);
     match early.outcome {

@@ -9,13 +9,13 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float;
 
-use super::line::{Line, LocalRay, Part};
+use super::line::{CastRay, Line, LocalRay};
 use super::{RayContact, Stop};
 use crate::body::{CastBody, Measures, PointPair};
 use crate::observer::Observer;
 use crate::simplex::MAX_POINTS;
 use crate::unit::{lost_to_underflow, power_of_two_near, reciprocal_of_power};
-use crate::{Iterate, Ray, RayCastOptions, Status};
+use crate::{Iterate, RayCastOptions, Status};
 
 /// The largest tolerance, in sizes of the body.
 const LARGEST_TOLERANCE: f64 = 16.0;
@@ -109,14 +109,11 @@ enum EntryProof {
 }
 
 impl<'a, V: Vector> Bracket<'a, V> {
-    /// A part of the ray, as far as it is in the ball about the body. The direction may be wrong by some part of its
-    /// length.
+    /// A part of the ray, as far as it is in the ball about the body.
     #[inline(always)]
     pub(super) fn new(
         body: &'a mut dyn CastBody<Vector = V>,
-        ray: Ray<V>,
-        direction_error: V::Scalar,
-        part: Part<V::Scalar>,
+        CastRay { ray, direction_error, part }: CastRay<V>,
         options: &'a RayCastOptions<V>,
         observer: &'a mut Observer<'_, V>,
     ) -> Self {
@@ -368,20 +365,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// radius from the line at `high`, and that is no farther behind the plane than was asked for.
     #[inline(always)]
     pub(super) fn close(&mut self, point: V, witness: PointPair<V>, high: V::Scalar) -> Result<RayContact<V>, Stop<V>> {
-        self.close_in(self.radius, point, witness, high)
-    }
-
-    /// The same for a ball within the body, of any radius about the point.
-    #[inline(always)]
-    pub(super) fn close_in(
-        &mut self,
-        radius: V::Scalar,
-        point: V,
-        witness: PointPair<V>,
-        high: V::Scalar,
-    ) -> Result<RayContact<V>, Stop<V>> {
         let aside = point - self.ray.line.at(high);
-        let within = radius + self.noise;
+        let within = self.radius + self.noise;
         let gap = (high - self.low()) * self.slope_or_one();
         let closed = gap <= self.tolerance() && gap >= -self.noise;
         if !(closed && aside.length_squared() <= within * within) {
@@ -487,21 +472,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
         let is_crossed_here = error == Scalar::ZERO && spread > Scalar::ZERO;
         self.high = Bound { at, spread: if is_crossed_here { spread } else { self.spread_at(slope) }, more: error };
         RayContact { mu: at, normal: self.normal, witness }
-    }
-
-    /// The contact where the last plane is crossed, if the core has a `point` on the line, made of `witness`, that is
-    /// no farther behind the plane than rounding.
-    pub(super) fn close_at_point(&mut self, point: V, witness: PointPair<V>) -> Option<RayContact<V>> {
-        let line = self.ray.line;
-        let aside = line.across(point - line.foot).length();
-        let mu = point.dot(line.direction);
-        let slope = self.slope_or_one();
-        let near = aside <= self.noise * V::Scalar::from_f64(0.5);
-        if !(near && (mu - self.low()) * slope <= self.noise + self.noise) {
-            return None;
-        }
-        self.high = Bound { at: mu.max(self.low()), spread: self.spread_or_one(), more: Scalar::ZERO };
-        Some(RayContact { mu: self.low_or_at(mu), normal: self.normal, witness })
     }
 
     /// How much later the upper bound may be. The surface may be met less steeply than the plane, by what noise leaves

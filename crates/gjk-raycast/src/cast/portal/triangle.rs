@@ -12,13 +12,11 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::OF_FACE;
-use super::closing::BestPlane;
-use super::pieces::is_surrounded;
-use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
-use super::sqp::{Portal, sqp};
-use crate::body::PointPair;
+use super::sqp::sqp;
+use super::{BestPlane, OF_FACE};
 use crate::cast::bracket::Bracket;
+use crate::cast::pieces::OnLine;
+use crate::cast::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint, weights_of_zero};
 use crate::cast::{RayContact, Stop};
 use crate::symmetric::dot;
 
@@ -31,20 +29,15 @@ const NEAR: f64 = 0.01;
 /// Exchanges of a point that bring the portal no nearer.
 pub(super) const MAX_EXCHANGES: usize = 12;
 
-/// Closes the bracket, beginning with a plane across `first`, which may be known to support the body at `seen`, and with
-/// planes tilted by `tilt` until a portal is found.
+/// Closes the bracket, beginning with a plane across `first`, and with planes tilted by `tilt` until a portal is found.
 #[inline(always)]
 pub(super) fn triangle<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
     first: V,
-    seen: Option<RayPoint<V>>,
     tilt: V::Scalar,
 ) -> Result<RayContact<V>, Stop<V>> {
-    let mut p = match seen {
-        Some(p) => p,
-        None => frame.support(bracket, first)?,
-    };
+    let mut p = frame.support(bracket, first)?;
     let mut best = BestPlane::none(bracket.end());
     best.begin(bracket, frame, first, &mut p, Scalar::ZERO)?;
     if !(dot(p.across(), p.across()) > bracket.noise * bracket.noise) {
@@ -58,27 +51,15 @@ pub(super) fn triangle<V: Vector>(
     }
     let mut planes = Planes { frame, alpha: best.alpha, best, tilt };
     let mut q = planes.opposite(bracket, &p)?;
-    if tilt < Scalar::ONE {
-        if let Some(found) = mixed(frame, &p, &q) {
-            return planes.shrink(bracket, found);
-        }
-        // Pieces known from so near tell where to look next before the line is enclosed.
-        if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.body.is_curved() {
-            match sqp(bracket, frame, Portal::unknown([p, p, q]), planes.best, tilt) {
-                Err(Stop::InDoubt) => {}
-                found => return found,
-            }
+    // Pieces known from so near tell where to look next before the line is enclosed.
+    if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.body.is_curved() {
+        match sqp(bracket, frame, OnLine::unknown([p, p, q]), planes.best, tilt) {
+            Err(Stop::InDoubt) => {}
+            found => return found,
         }
     }
-    match planes.enclose(bracket, &mut p, &mut q)? {
-        Some(found) => planes.shrink(bracket, found),
-        // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a
-        // smooth piece may be found that it runs through.
-        None if planes.best.is_known() && frame.is_curved(bracket.body, frame.normal(planes.best.alpha.plane())) => {
-            sqp(bracket, frame, Portal::unknown([p, q, q]), planes.best, tilt)
-        }
-        None => Err(Stop::InDoubt),
-    }
+    let portal = planes.enclose(bracket, &mut p, &mut q)?;
+    planes.shrink(bracket, portal)
 }
 
 /// The planes of the search: the last, the best, and how far the next one is tilted towards the line.
@@ -142,14 +123,14 @@ impl<V: Vector> Planes<'_, V> {
         self.support_toward(bracket, plane, toward)
     }
 
-    /// A third point such that the triangle contains zero. `None` where there are too many that do not.
+    /// A third point such that the triangle contains zero.
     #[inline(always)]
     fn enclose(
         &mut self,
         bracket: &mut Bracket<'_, V>,
         p: &mut RayPoint<V>,
         q: &mut RayPoint<V>,
-    ) -> Result<Option<Triangle<V>>, Stop<V>> {
+    ) -> Result<Triangle<V>, Stop<V>> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let most = if bracket.body.is_curved() { MAX_OUTSIDE / 2 } else { MAX_OUTSIDE };
         for _ in 0..most {
@@ -166,11 +147,12 @@ impl<V: Vector> Planes<'_, V> {
             let s = self.support_toward(bracket, plane, toward)?;
             let weights = [q.cross(&s) * turn, s.cross(p) * turn, area.abs()];
             if weights[0] >= zero && weights[1] >= zero {
-                return Ok(Some(Triangle { corners: [*p, *q, s], weights, turn }));
+                return Ok(Triangle { corners: [*p, *q, s], weights, turn });
             }
             *(if weights[0] < weights[1] { &mut *p } else { &mut *q }) = s;
         }
-        Ok(None)
+        // The line passes near where the body is seen to end, too near to be enclosed by points.
+        Err(Stop::InDoubt)
     }
 
     /// Brings the portal nearer until the bracket closes between the best plane, at its own cosine, and the portal.
@@ -262,32 +244,26 @@ impl<V: Vector> Triangle<V> {
         }
     }
 
-    fn anticlockwise(&self, [wp, wq, ws]: [V::Scalar; 3], high: V::Scalar) -> Portal<V> {
+    fn anticlockwise(&self, [wp, wq, ws]: [V::Scalar; 3], high: V::Scalar) -> OnLine<V> {
         let [p, q, s] = self.corners;
         let (corners, weights) =
             if self.turn > Scalar::ZERO { ([p, q, s], [wp, wq, ws]) } else { ([q, p, s], [wq, wp, ws]) };
-        Portal { corners, weights, high }
+        OnLine { corners, weights, high }
     }
 }
 
-/// The triangle of two points and one that is of the first of one shape and of the second of the other, if it contains
-/// zero: where two edges cross, the line runs through the parallelogram of their ends.
-fn mixed<V: Vector>(frame: &RayFrame<V>, p: &RayPoint<V>, q: &RayPoint<V>) -> Option<Triangle<V>> {
-    let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-    if frame.radius() > zero {
-        return None;
-    }
-    let area = p.cross(q);
-    let turn = one.copysign(area);
-    [[p, q], [q, p]].into_iter().find_map(|[a, b]| {
-        let s = frame.seen(PointPair { a: a.witness.a, b: b.witness.b });
-        let weights = [area.abs(), q.cross(&s) * turn, s.cross(p) * turn];
-        (weights[1] > zero && weights[2] > zero).then_some(Triangle { corners: [s, *p, *q], weights, turn })
-    })
+/// Whether zero is within a triangle, farther than `by` from its sides: twice the area that it spans with one is the
+/// length of that times its distance.
+#[inline(always)]
+fn is_surrounded<V: Vector>([p, q, s]: [&RayPoint<V>; 3], by: V::Scalar) -> bool {
+    let weights = weights_of_zero([p.across(), q.across(), s.across()]);
+    let sides = [q.edge_to(s).0, s.edge_to(p).0, p.edge_to(q).0];
+    let is_beyond = |i: usize| weights[i] * weights[i] > by * by * dot(sides[i], sides[i]);
+    is_beyond(0) & is_beyond(1) & is_beyond(2)
 }
 
 /// The support point along a vector across the ray, if the plane there does not separate and the point is beyond the
-/// line. Where the line touches the body there, to rounding, it is to pass a little farther inside.
+/// line.
 #[cold]
 #[inline(never)]
 fn support_across<V: Vector>(
@@ -296,15 +272,8 @@ fn support_across<V: Vector>(
     toward: (V::Scalar, V::Scalar),
 ) -> Result<RayPoint<V>, Stop<V>> {
     let across = frame.vector(toward).unit().ok_or(Stop::InDoubt)?;
-    let p: RayPoint<_> = frame.support(bracket, across)?;
+    let p = frame.support(bracket, across)?;
     bracket.advance(across, p.point)?;
-    let beyond = (p.point - frame.foot()).dot(across) + frame.radius();
-    if beyond > Scalar::ZERO {
-        return Ok(p);
-    }
-    let inward = bracket.noise * V::Scalar::from_f64(0.5);
-    if bracket.radius == Scalar::ZERO && frame.foot() == bracket.line().foot && beyond > -inward {
-        return Err(Stop::Touches(-across * inward));
-    }
-    Err(Stop::InDoubt)
+    let is_beyond = (p.point - bracket.line().foot).dot(across) + bracket.radius > Scalar::ZERO;
+    if is_beyond { Ok(p) } else { Err(Stop::InDoubt) }
 }
