@@ -169,7 +169,16 @@ fn late<V: Vector>(
             let status = Status::Converged.of(&outcome, upper < V::Scalar::infinity());
             RayCast { outcome, lower: begin, upper, status, iterations }
         }
-        _ => of_whole_ray(early, ray, options, [begin - slack, error]),
+        _ => {
+            let (mut answer, start) = (early, begin - slack);
+            if let Outcome::Hit(hit) = &mut answer.outcome {
+                hit.lambda = (start + hit.lambda).max(begin).min(options.max_lambda);
+                hit.point = ray.at(hit.lambda);
+            }
+            answer.lower = (start + answer.lower - error).max(begin);
+            answer.upper = start + answer.upper + error;
+            answer
+        }
     }
 }
 
@@ -186,22 +195,4 @@ fn answer<V: Vector>(cast: Cast<V>, ray: Ray<V>) -> RayCast<V> {
     };
     let status = cast.status.of(&outcome, cast.upper < V::Scalar::infinity());
     RayCast { outcome, lower: cast.lower, upper: cast.upper, status, iterations: cast.iterations }
-}
-
-/// The answer in the parameters of the whole ray, for a part of it that begins at a parameter which is known to within
-/// an `error`.
-fn of_whole_ray<V: Vector>(
-    mut answer: RayCast<V>,
-    ray: Ray<V>,
-    options: RayCastOptions<V>,
-    [start, error]: [V::Scalar; 2],
-) -> RayCast<V> {
-    let begin = options.min_lambda;
-    if let Outcome::Hit(hit) = &mut answer.outcome {
-        hit.lambda = (start + hit.lambda).max(begin).min(options.max_lambda);
-        hit.point = ray.at(hit.lambda);
-    }
-    answer.lower = (start + answer.lower - error).max(begin);
-    answer.upper = start + answer.upper + error;
-    answer
 }

@@ -78,7 +78,8 @@ pub(super) struct Bracket<'a, V: Vector> {
     /// The unit of length.
     pub(super) scale: V::Scalar,
     observer: Observer<'a, V>,
-    iterations: usize,
+    /// The number of support points taken.
+    pub(super) iterations: usize,
     /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative
     /// where the line misses it, and the half, which is then zero.
     chord: (V::Scalar, V::Scalar),
@@ -88,7 +89,7 @@ pub(super) struct Bracket<'a, V: Vector> {
     normal: Option<V>,
     /// Where the ray is in the body, at the latest.
     high: Bound<V::Scalar>,
-    entry: EntryProof,
+    pub(super) entry: EntryProof,
     /// Where the line enters the hull of known points of the body.
     hull: V::Scalar,
     /// Three points of the body that are seen around the line, two in the plane, where a search found them.
@@ -97,7 +98,7 @@ pub(super) struct Bracket<'a, V: Vector> {
 
 /// How far the upper bound is to be trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum EntryProof {
+pub(super) enum EntryProof {
     /// The ray is in the body there, whatever the errors.
     Certain,
     /// It is if the surface goes on as it was seen to, as far as an error reaches.
@@ -206,16 +207,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
         let Bound { spread, more, .. } = self.high;
         let radius = self.rolling_radius;
         spread == Scalar::ZERO || radius > (self.error + more) * spread * spread * V::Scalar::from_f64(DEEP)
-    }
-
-    /// Takes note that an edge, or a graze, may be within an error of where the ray enters.
-    pub(super) fn doubt_entry(&mut self) {
-        self.entry = EntryProof::InDoubt;
-    }
-
-    /// Takes note that the outline of the body is within an error of the ray.
-    pub(super) fn touch_outline(&mut self) {
-        self.entry = EntryProof::AtOutline;
     }
 
     /// Whether another look, at what is near the hit alone, may tell that the ray is in the body.
@@ -424,7 +415,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         let mu = mu.max(self.low_or_at(mu));
         // What the line passes within an error it may as well miss.
         self.high = Bound { more: within, ..Bound::exact(mu.max(self.low())) };
-        self.doubt_entry();
+        self.entry = EntryProof::InDoubt;
         // Where the ray grazes what is round, the shortest vector is the normal, and the last plane is of elsewhere.
         // Without a radius it has no digits.
         let normal = if self.radius > self.noise { v.unit() } else { normal.or(self.normal) };
@@ -517,11 +508,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
         };
         let other = other.filter(|m| (m.dot(line.direction) > zero) == (slope < zero));
         other.and_then(|m| (n * m.dot(line.direction).abs() + m * slope.abs()).unit()).unwrap_or(n)
-    }
-
-    /// The number of support points taken.
-    pub(super) fn iterations(&self) -> usize {
-        self.iterations
     }
 }
 

@@ -21,7 +21,7 @@ use crate::observer::Observer;
 use crate::simplex::Simplex;
 use crate::{CastMethod, Miss, Outcome, RayCastOptions, Status};
 use algorithm_3::{algorithm_3, touch_beside};
-use bracket::Bracket;
+use bracket::{Bracket, EntryProof};
 use certain::at_certain_entry;
 pub(crate) use certain::{certain, certain_closely, is_plain, show};
 pub(crate) use line::{CastRay, LocalRay, Part};
@@ -127,7 +127,7 @@ fn search<V: Vector, const ALL: bool>(bracket: &mut Bracket<'_, V>) -> Result<Ra
         }
     }
     // In the plane this is the search. Elsewhere it is what is left where rounding decides.
-    bracket.doubt_entry();
+    bracket.entry = EntryProof::InDoubt;
     algorithm_3(bracket)
 }
 
@@ -207,6 +207,6 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
         Err(Stop::InDoubt) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
     };
     let is_open = matches!(outcome, Outcome::Hit(_)) && bracket.is_worth_another_look();
-    let (iterations, scale) = (bracket.iterations(), bracket.scale);
+    let (iterations, scale) = (bracket.iterations, bracket.scale);
     Cast { outcome, lower, upper, status, iterations, scale, is_open }
 }

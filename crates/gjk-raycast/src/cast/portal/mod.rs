@@ -11,10 +11,12 @@ mod triangle;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::bracket::Bracket;
-use super::ray_frame::{Alpha, RayFrame, RayPoint};
+use super::bracket::{Bracket, EntryProof};
+use super::pieces::OnLine;
+use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint, weights_of_zero};
 use super::{RayContact, Stop};
 use crate::body::PointPair;
+use crate::symmetric::dot;
 use rounded::rounded;
 use triangle::triangle;
 
@@ -139,4 +141,86 @@ impl<V: Vector> BestPlane<V> {
 #[inline(always)]
 fn swept<S: Scalar>(radius: S, alpha: Alpha<S>) -> S {
     if radius > S::ZERO { radius * alpha.length() } else { S::ZERO }
+}
+
+/// A portal: three points of the body whose triangle contains zero as seen along the ray.
+#[derive(Clone, Copy)]
+struct Portal<V: Vector> {
+    corners: [RayPoint<V>; 3],
+    /// Zero's weights, up to their sum.
+    weights: [V::Scalar; 3],
+    /// Whether the corners go round anticlockwise, 1, or clockwise, −1: cheaper to keep than to put them in order.
+    turn: V::Scalar,
+}
+
+impl<V: Vector> Portal<V> {
+    fn sum(&self) -> V::Scalar {
+        let [w0, w1, w2] = self.weights;
+        w0 + w1 + w2
+    }
+
+    /// Its plane, where the sum of the weights is known.
+    #[inline(always)]
+    fn plane(&self, sum: V::Scalar) -> RayPlane<V::Scalar> {
+        let [p, q, s] = &self.corners;
+        let RayPlane { a, b, .. } = RayPlane::through([p, q, s]);
+        RayPlane { a: a * self.turn, b: b * self.turn, c: sum }
+    }
+
+    fn alpha(&self) -> Alpha<V::Scalar> {
+        self.plane(self.sum()).alpha()
+    }
+
+    /// Where the line runs through, by the reciprocal of that sum.
+    #[inline(always)]
+    fn high(&self, inverse: V::Scalar) -> V::Scalar {
+        let ([w0, w1, w2], [p, q, s]) = (self.weights, &self.corners);
+        (w0 * p.t + w1 * q.t + w2 * s.t) * inverse
+    }
+
+    /// The combination of its corners that is on the line.
+    fn on_line(&self) -> OnLine<V> {
+        let inverse = self.sum().recip();
+        OnLine { corners: self.corners, weights: self.weights.map(|w| w * inverse), high: self.high(inverse) }
+    }
+
+    /// Puts a point in the place of the corner that leaves zero inside.
+    #[inline(always)]
+    fn exchange(&mut self, r: RayPoint<V>) -> Result<(), Stop<V>> {
+        let zero = V::Scalar::ZERO;
+        let [p, q, s] = &mut self.corners;
+        let [wp, wq, ws] = self.weights;
+        let turn = self.turn;
+        let (kp, kq, ks) = (p.cross(&r) * turn, q.cross(&r) * turn, s.cross(&r) * turn);
+        if kq >= zero && kp <= zero {
+            (*s, self.weights) = (r, [kq, -kp, ws]);
+        } else if ks >= zero && kq <= zero {
+            (*p, self.weights) = (r, [wp, ks, -kq]);
+        } else if kp >= zero && ks <= zero {
+            (*q, self.weights) = (r, [-ks, wq, kp]);
+        } else {
+            return Err(Stop::InDoubt);
+        }
+        Ok(())
+    }
+
+    /// Bounds the entry by its plane, where the line runs through it by more than an error.
+    #[inline(always)]
+    fn bound_entry(&self, bracket: &mut Bracket<'_, V>, RayPlane { a, b, c }: RayPlane<V::Scalar>, high: V::Scalar) {
+        if is_surrounded(self.corners.each_ref(), bracket.error + bracket.noise) {
+            bracket.pierce(high, (a * a + b * b + c * c).sqrt() / c);
+        } else {
+            bracket.entry = EntryProof::InDoubt;
+        }
+    }
+}
+
+/// Whether zero is within a triangle, farther than `by` from its sides: twice the area that it spans with one is the
+/// length of that times its distance.
+#[inline(always)]
+fn is_surrounded<V: Vector>([p, q, s]: [&RayPoint<V>; 3], by: V::Scalar) -> bool {
+    let weights = weights_of_zero([p.across(), q.across(), s.across()]);
+    let sides = [q.edge_to(s).0, s.edge_to(p).0, p.edge_to(q).0];
+    let is_beyond = |i: usize| weights[i] * weights[i] > by * by * dot(sides[i], sides[i]);
+    is_beyond(0) & is_beyond(1) & is_beyond(2)
 }

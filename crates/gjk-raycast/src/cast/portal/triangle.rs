@@ -13,10 +13,9 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::sqp::sqp;
-use super::{BestPlane, OF_FACE};
-use crate::cast::bracket::Bracket;
-use crate::cast::pieces::OnLine;
-use crate::cast::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint, weights_of_zero};
+use super::{BestPlane, OF_FACE, Portal};
+use crate::cast::bracket::{Bracket, EntryProof};
+use crate::cast::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use crate::cast::{RayContact, Stop};
 use crate::symmetric::dot;
 
@@ -42,7 +41,7 @@ pub(super) fn triangle<V: Vector>(
     best.begin(bracket, frame, first, &mut p, Scalar::ZERO)?;
     if !(dot(p.across(), p.across()) > bracket.noise * bracket.noise) {
         // The line runs through the first one, which may be a corner.
-        bracket.doubt_entry();
+        bracket.entry = EntryProof::InDoubt;
         return if best.is_known() {
             best.close(bracket, frame, &[p], &[Scalar::ONE], p.t)
         } else {
@@ -53,7 +52,7 @@ pub(super) fn triangle<V: Vector>(
     let mut q = planes.opposite(bracket, &p)?;
     // Pieces known from so near tell where to look next before the line is enclosed.
     if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.body.is_curved() {
-        match sqp(bracket, frame, OnLine::unknown([p, p, q]), planes.best, tilt) {
+        match sqp(bracket, frame, &[p, q], None, planes.best, tilt) {
             Err(Stop::InDoubt) => {}
             found => return found,
         }
@@ -68,15 +67,6 @@ struct Planes<'f, V: Vector> {
     alpha: Alpha<V::Scalar>,
     best: BestPlane<V>,
     tilt: V::Scalar,
-}
-
-/// Three points of the body whose triangle contains zero as seen along the ray.
-struct Triangle<V: Vector> {
-    corners: [RayPoint<V>; 3],
-    /// Zero's weights, up to their sum.
-    weights: [V::Scalar; 3],
-    /// Whether the corners go round anticlockwise, 1, or clockwise, −1: cheaper to keep than to put them in order.
-    turn: V::Scalar,
 }
 
 impl<V: Vector> Planes<'_, V> {
@@ -130,7 +120,7 @@ impl<V: Vector> Planes<'_, V> {
         bracket: &mut Bracket<'_, V>,
         p: &mut RayPoint<V>,
         q: &mut RayPoint<V>,
-    ) -> Result<Triangle<V>, Stop<V>> {
+    ) -> Result<Portal<V>, Stop<V>> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let most = if bracket.body.is_curved() { MAX_OUTSIDE / 2 } else { MAX_OUTSIDE };
         for _ in 0..most {
@@ -147,7 +137,7 @@ impl<V: Vector> Planes<'_, V> {
             let s = self.support_toward(bracket, plane, toward)?;
             let weights = [q.cross(&s) * turn, s.cross(p) * turn, area.abs()];
             if weights[0] >= zero && weights[1] >= zero {
-                return Ok(Triangle { corners: [*p, *q, s], weights, turn });
+                return Ok(Portal { corners: [*p, *q, s], weights, turn });
             }
             *(if weights[0] < weights[1] { &mut *p } else { &mut *q }) = s;
         }
@@ -157,21 +147,18 @@ impl<V: Vector> Planes<'_, V> {
 
     /// Brings the portal nearer until the bracket closes between the best plane, at its own cosine, and the portal.
     #[inline(always)]
-    fn shrink(&mut self, bracket: &mut Bracket<'_, V>, mut portal: Triangle<V>) -> Result<RayContact<V>, Stop<V>> {
+    fn shrink(&mut self, bracket: &mut Bracket<'_, V>, mut portal: Portal<V>) -> Result<RayContact<V>, Stop<V>> {
         let tolerance = bracket.tolerance();
         bracket.around = Some(portal.corners.map(|p| p.point));
         let mut last = V::Scalar::infinity();
         let mut exchanges = MAX_EXCHANGES;
         loop {
-            let [w0, w1, w2] = portal.weights;
-            let sum = w0 + w1 + w2;
+            let sum = portal.sum();
             if !(sum > Scalar::ZERO) {
                 return Err(Stop::InDoubt);
             }
-            let plane = portal.plane(sum);
-            let inverse = sum.recip();
-            let [p, q, s] = &portal.corners;
-            let high = (w0 * p.t + w1 * q.t + w2 * s.t) * inverse;
+            let (plane, inverse) = (portal.plane(sum), sum.recip());
+            let high = portal.high(inverse);
             if !(high < last) {
                 exchanges -= 1;
                 if exchanges == 0 || !(high < V::Scalar::infinity()) {
@@ -191,7 +178,7 @@ impl<V: Vector> Planes<'_, V> {
                 return Ok(found);
             }
             if bracket.body.is_curved() && self.frame.is_curved(bracket.body, self.frame.normal(plane)) {
-                return sqp(bracket, self.frame, portal.anticlockwise(weights, high), self.best, self.tilt);
+                return sqp(bracket, self.frame, &portal.corners, Some(portal), self.best, self.tilt);
             }
             let before = self.best.tau;
             let r = self.support(bracket, plane)?;
@@ -203,63 +190,6 @@ impl<V: Vector> Planes<'_, V> {
             portal.exchange(r)?;
         }
     }
-}
-
-impl<V: Vector> Triangle<V> {
-    /// Its plane, where the sum of the weights is known.
-    #[inline(always)]
-    fn plane(&self, sum: V::Scalar) -> RayPlane<V::Scalar> {
-        let [p, q, s] = &self.corners;
-        let RayPlane { a, b, .. } = RayPlane::through([p, q, s]);
-        RayPlane { a: a * self.turn, b: b * self.turn, c: sum }
-    }
-
-    /// Puts a point before its plane in the place of the corner that leaves zero inside.
-    #[inline(always)]
-    fn exchange(&mut self, r: RayPoint<V>) -> Result<(), Stop<V>> {
-        let zero = V::Scalar::ZERO;
-        let [p, q, s] = &mut self.corners;
-        let [wp, wq, ws] = self.weights;
-        let turn = self.turn;
-        let (kp, kq, ks) = (p.cross(&r) * turn, q.cross(&r) * turn, s.cross(&r) * turn);
-        if kq >= zero && kp <= zero {
-            (*s, self.weights) = (r, [kq, -kp, ws]);
-        } else if ks >= zero && kq <= zero {
-            (*p, self.weights) = (r, [wp, ks, -kq]);
-        } else if kp >= zero && ks <= zero {
-            (*q, self.weights) = (r, [-ks, wq, kp]);
-        } else {
-            return Err(Stop::InDoubt);
-        }
-        Ok(())
-    }
-
-    /// Bounds the entry by its plane, where the line runs through it by more than an error.
-    #[inline(always)]
-    fn bound_entry(&self, bracket: &mut Bracket<'_, V>, RayPlane { a, b, c }: RayPlane<V::Scalar>, high: V::Scalar) {
-        if is_surrounded(self.corners.each_ref(), bracket.error + bracket.noise) {
-            bracket.pierce(high, (a * a + b * b + c * c).sqrt() / c);
-        } else {
-            bracket.doubt_entry();
-        }
-    }
-
-    fn anticlockwise(&self, [wp, wq, ws]: [V::Scalar; 3], high: V::Scalar) -> OnLine<V> {
-        let [p, q, s] = self.corners;
-        let (corners, weights) =
-            if self.turn > Scalar::ZERO { ([p, q, s], [wp, wq, ws]) } else { ([q, p, s], [wq, wp, ws]) };
-        OnLine { corners, weights, high }
-    }
-}
-
-/// Whether zero is within a triangle, farther than `by` from its sides: twice the area that it spans with one is the
-/// length of that times its distance.
-#[inline(always)]
-fn is_surrounded<V: Vector>([p, q, s]: [&RayPoint<V>; 3], by: V::Scalar) -> bool {
-    let weights = weights_of_zero([p.across(), q.across(), s.across()]);
-    let sides = [q.edge_to(s).0, s.edge_to(p).0, p.edge_to(q).0];
-    let is_beyond = |i: usize| weights[i] * weights[i] > by * by * dot(sides[i], sides[i]);
-    is_beyond(0) & is_beyond(1) & is_beyond(2)
 }
 
 /// The support point along a vector across the ray, if the plane there does not separate and the point is beyond the
