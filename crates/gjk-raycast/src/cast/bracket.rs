@@ -276,6 +276,15 @@ impl<'a, V: Vector> Bracket<'a, V> {
         }
         let (point, witness) = self.body.support(n);
         self.iterations += 1;
+        if !self.observer.is_none() {
+            self.show(point, v, simplex);
+        }
+        if point.is_finite() { Ok((point, witness)) } else { Err(Stop::Exhausted(Status::Stalled)) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn show(&mut self, point: V, v: V, simplex: &[V]) {
         let x = self.x();
         let mut seen = [V::ZERO; MAX_POINTS];
         let (low, high) = (self.low(), self.high.at);
@@ -287,7 +296,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
             let simplex = &seen[..simplex.len().min(MAX_POINTS)];
             Iterate { iteration: self.iterations - 1, simplex, v, w: x - point, scale: self.scale, lower, upper }
         });
-        if point.is_finite() { Ok((point, witness)) } else { Err(Stop::Exhausted(Status::Stalled)) }
     }
 
     /// How far rounding has moved a parameter of the line at most.

@@ -201,6 +201,7 @@ impl<V: Vector> RayPieces<V> {
 ///
 /// The newest piece is the lowest where it was looked at, and mostly one of those. So those without it are tried only
 /// where none with it will do.
+#[inline(never)]
 pub(super) fn best_plane<V: Vector>(
     pieces: &[RayPiece<V>],
     alpha: Alpha<V::Scalar>,

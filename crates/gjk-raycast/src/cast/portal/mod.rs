@@ -154,6 +154,14 @@ struct Portal<V: Vector> {
 }
 
 impl<V: Vector> Portal<V> {
+    /// The triangle of three points, if it contains zero.
+    fn around(corners: [RayPoint<V>; 3]) -> Option<Self> {
+        let areas = weights_of_zero(corners.map(|p| p.across()));
+        let turn = V::Scalar::ONE.copysign(areas[2]);
+        let weights = areas.map(|area| area * turn);
+        weights.iter().all(|&w| w >= Scalar::ZERO).then_some(Self { corners, weights, turn })
+    }
+
     fn sum(&self) -> V::Scalar {
         let [w0, w1, w2] = self.weights;
         w0 + w1 + w2

@@ -16,7 +16,7 @@ use num_traits::Float as _;
 
 use super::{BestPlane, Portal};
 use crate::cast::bracket::Bracket;
-use crate::cast::pieces::{RayPiece, RayPieces, best_plane};
+use crate::cast::pieces::{OnLine, RayPiece, RayPieces, best_plane};
 use crate::cast::ray_frame::{Alpha, RayFrame, RayPoint};
 use crate::cast::{RayContact, Stop};
 use crate::symmetric::Across;
@@ -34,6 +34,7 @@ const FAR: f64 = 8.0;
 /// Brings a portal nearer, by planes that the curvature of the body suggests as long as they close the bracket fast,
 /// and by the portal's own. Or where none is known, searches by curvature alone. The
 /// points were found by planes that were tilted from one another by so much.
+#[inline(never)]
 pub(super) fn sqp<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
@@ -61,23 +62,23 @@ pub(super) fn sqp<V: Vector>(
         }
     }
     let start = bracket.low();
+    let mut own = portal.as_ref().map(Portal::on_line);
     let mut steps = Steps { gap: V::Scalar::infinity(), failures: 0, error_weight: V::Scalar::ONE };
     for _ in 0..MAX_STEPS {
         let p = frame.support_of(bracket, alpha.plane())?;
         best.improve(bracket, frame, alpha, &p, Scalar::ZERO)?;
         steps.weigh_error(pieces.push(RayPiece::new(bracket, frame, p, alpha), bracket.noise));
         let floor = best.tau - bracket.noise * best.alpha.length();
-        // A triangle that is as flat as rounding may not contain zero: nothing of the body is before the plane.
-        let mut own = portal.as_ref().map(Portal::on_line);
-        if let Some(mut next) = portal
-            && next.exchange(p).is_ok()
-            && let nearer = next.on_line()
-            && nearer.high >= floor
-            && own.is_some_and(|own| nearer.high < own.high)
-        {
-            (portal, own) = (Some(next), Some(nearer));
+        let next = match portal {
+            Some(mut portal) => portal.exchange(p).ok().map(|()| portal),
+            None => Portal::around([points[0], points[1], p]),
+        };
+        let is_nearer = |at: &OnLine<V>| at.high >= floor && own.is_none_or(|own| at.high < own.high);
+        if let Some(nearer) = next.as_ref().map(Portal::on_line).filter(is_nearer) {
+            (portal, own) = (next, Some(nearer));
         }
         if own.is_some_and(|own| own.high < floor) {
+            // Nothing of the body is before the plane: zero was in the triangle by rounding alone.
             (portal, own) = (None, None);
         } else if own.is_some_and(|own| own.high < start) {
             break;
@@ -93,8 +94,8 @@ pub(super) fn sqp<V: Vector>(
                 }
             }
         }
-        let own = own.zip(portal.as_ref()).map(|(own, portal)| (portal.alpha(), own.high));
-        let Some(to) = steps.next(bracket, &pieces, own, &best, alpha) else { break };
+        let plane = own.zip(portal.as_ref()).map(|(own, portal)| (portal.alpha(), own.high));
+        let Some(to) = steps.next(bracket, &pieces, plane, &best, alpha) else { break };
         alpha = to;
     }
     Err(Stop::InDoubt)

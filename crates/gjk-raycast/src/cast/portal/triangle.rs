@@ -17,7 +17,7 @@ use super::{BestPlane, OF_FACE, Portal};
 use crate::cast::bracket::{Bracket, EntryProof};
 use crate::cast::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use crate::cast::{RayContact, Stop};
-use crate::symmetric::dot;
+use crate::symmetric::{Across, dot};
 
 /// Support points until the portal has to be found; half as many where curvature may tell more.
 const MAX_OUTSIDE: usize = 16;
@@ -88,18 +88,32 @@ impl<V: Vector> Planes<'_, V> {
         plane: RayPlane<V::Scalar>,
         toward: (V::Scalar, V::Scalar),
     ) -> Result<RayPoint<V>, Stop<V>> {
-        let is_beyond = |p: &RayPoint<V>| dot(toward, p.across()) > V::Scalar::ZERO;
-        let mut p = self.support(bracket, plane)?;
-        while !is_beyond(&p) && self.tilt < Scalar::ONE {
-            let number = V::Scalar::from_f64;
+        let p = self.support(bracket, plane)?;
+        if dot(toward, p.across()) > Scalar::ZERO { Ok(p) } else { self.support_farther(bracket, toward) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn support_farther(
+        &mut self,
+        bracket: &mut Bracket<'_, V>,
+        toward: Across<V::Scalar>,
+    ) -> Result<RayPoint<V>, Stop<V>> {
+        let number = V::Scalar::from_f64;
+        while self.tilt < Scalar::ONE {
             self.tilt = (self.tilt * number(8.0)).max(number(OF_FACE));
-            p = self.support(bracket, self.alpha.tilted(toward, self.tilt).plane())?;
+            let p = self.support(bracket, self.alpha.tilted(toward, self.tilt).plane())?;
+            if dot(toward, p.across()) > Scalar::ZERO {
+                return Ok(p);
+            }
         }
-        if is_beyond(&p) {
-            return Ok(p);
-        }
+        // In the end the plane along the line does not separate and has its point beyond.
         self.tilt = self.tilt.max(Scalar::ONE);
-        support_across(bracket, self.frame, toward)
+        let across = self.frame.vector(toward).unit().ok_or(Stop::InDoubt)?;
+        let p = self.frame.support(bracket, across)?;
+        bracket.advance(across, p.point)?;
+        let is_beyond = (p.point - bracket.line().foot).dot(across) + bracket.radius > Scalar::ZERO;
+        if is_beyond { Ok(p) } else { Err(Stop::InDoubt) }
     }
 
     /// A second point on the other side of the line, of a plane that is tilted towards it.
@@ -190,20 +204,4 @@ impl<V: Vector> Planes<'_, V> {
             portal.exchange(r)?;
         }
     }
-}
-
-/// The support point along a vector across the ray, if the plane there does not separate and the point is beyond the
-/// line.
-#[cold]
-#[inline(never)]
-fn support_across<V: Vector>(
-    bracket: &mut Bracket<'_, V>,
-    frame: &RayFrame<V>,
-    toward: (V::Scalar, V::Scalar),
-) -> Result<RayPoint<V>, Stop<V>> {
-    let across = frame.vector(toward).unit().ok_or(Stop::InDoubt)?;
-    let p = frame.support(bracket, across)?;
-    bracket.advance(across, p.point)?;
-    let is_beyond = (p.point - bracket.line().foot).dot(across) + bracket.radius > Scalar::ZERO;
-    if is_beyond { Ok(p) } else { Err(Stop::InDoubt) }
 }
