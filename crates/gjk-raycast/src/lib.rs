@@ -154,7 +154,6 @@ mod options;
 mod ray;
 mod ray_cast;
 mod ray_casts;
-mod ray_entries;
 mod ray_exit;
 mod result;
 mod scene;
@@ -204,8 +203,7 @@ pub use ray::{Motion, Ray};
 pub use ray_cast::{ray_cast, ray_cast_with};
 #[cfg(feature = "rayon")]
 pub use ray_casts::par_ray_casts;
-pub use ray_casts::ray_casts;
-pub use ray_entries::{RayEntry, ray_entries_into};
+pub use ray_casts::{RayEntry, ray_casts, ray_entries_into};
 pub use ray_exit::ray_exit;
 pub use result::{
     Cast, Distance, Impact, Intersection, Iterate, LinearCast, Miss, MotionCast, Outcome, RayCast, RayExit, RayHit,

@@ -5,7 +5,7 @@ use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
-use crate::cast::{Cast, CastHit, Part, Quicker, RayOf, cast, certain_closely, settle_start};
+use crate::cast::{Approach, Cast, CastHit, CastRay, Part, Quicker, RayOf, cast, certain_closely, settle_start};
 use crate::extra::in_static;
 use crate::observer::Observer;
 use crate::shape::Shape;
@@ -139,14 +139,14 @@ where
 #[allow(clippy::type_complexity, reason = "it is said once")]
 pub(crate) struct AtStart<V: Vector> {
     rays: &'static Quicker<V>,
-    touch: fn(&mut LinearCast<V>, &StartingPair<'_, V>, &LinearCastOptions<V>),
+    touch: fn(&StartingPair<'_, V>, &mut LinearCast<V>, &LinearCastOptions<V>),
     of_motion: fn(&StartingPair<'_, V>, Motion<V>, &LinearCastOptions<V>, V::Scalar) -> Option<InContact<V>>,
 }
 
 impl<V: Vector> AtStart<V> {
     pub(crate) const TABLE: Self = Self {
         rays: &Quicker::TABLE,
-        touch: touch_at_start,
+        touch: |start, answer, options| start.touch(answer, options),
         of_motion: |start, motion, options, slack| start.of_motion(motion, options, slack),
     };
 }
@@ -175,15 +175,17 @@ fn searched<V: Vector>(
     options: &LinearCastOptions<V>,
     observer: &mut Observer<'_, V>,
 ) -> LinearCast<V> {
-    let (ray, direction_error, wanted) = ray_of(motion, cores.map(|core| core.origin), options);
+    let (whole, wanted) = ray_of(motion, cores.map(|core| core.origin), options);
+    let CastRay { ray, direction_error, .. } = whole;
     // Of no other pair is a crossing known.
     if cores.iter().any(|core| matches!(core.kind, CoreKind::Point(_)))
         && let Some(known) = certain_closely(body, ray, direction_error, &wanted, observer)
     {
         return answer(&Cast::of_certain(&known, body, ray), [a, b], cores, motion, options);
     }
-    let mut cast = cast(body, ray, direction_error, Part::Whole, &wanted, observer);
-    settle_start(&mut cast, a, options.target_distance.max(Scalar::ZERO), RayOf::Shape(b), ray.direction, &wanted);
+    let mut cast = cast(body, whole, &wanted, observer);
+    let skin = options.target_distance.max(Scalar::ZERO);
+    settle_start(&mut cast, Approach { a, skin, b: RayOf::Shape(b), direction: ray.direction }, &wanted);
     answer(&cast, [a, b], cores, motion, options)
 }
 
@@ -220,7 +222,7 @@ fn answer<V: Vector>(
         && options.start_in_contact == StartInContact::Report
         && let Some(extra) = options.extra.get()
     {
-        (extra.touch)(&mut answer, &start, options);
+        (extra.touch)(&start, &mut answer, options);
     }
     if options.start_in_contact == StartInContact::IfDeeper {
         let sizes = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
@@ -234,33 +236,13 @@ fn answer<V: Vector>(
     answer
 }
 
-/// Looks at shapes that are in contact at the start: the cast knows where the motion enters, which is behind the start
-/// or, sliding, ahead of it.
-#[cold]
-#[inline(never)]
-fn touch_at_start<V: Vector>(answer: &mut LinearCast<V>, start: &StartingPair<'_, V>, options: &LinearCastOptions<V>) {
-    let zero = V::Scalar::ZERO;
-    let left =
-        |taken: usize| LinearCastOptions { max_iterations: options.max_iterations.saturating_sub(taken), ..*options };
-    let at_start = start.distance(&left(answer.iterations));
-    answer.iterations += at_start.iterations;
-    let (normal, iterations) = start.touching_normal(&left(answer.iterations));
-    answer.iterations += iterations;
-    if normal.is_none() {
-        // They are certainly deeper than touching, whatever the motion.
-        answer.upper = zero;
-    }
-    answer.outcome = Outcome::Hit(Impact { time: zero, point: at_start.point_b, normal });
-}
-
-/// The ray that `b` draws as it is seen from `a`, what its direction is wrong by as a part of its length, and what is
-/// asked of it.
+/// The ray that `b` draws as it is seen from `a`, and what is asked of it.
 #[inline(always)]
 fn ray_of<V: Vector>(
     motion: Motion<V>,
     [origin_a, origin_b]: [V; 2],
     options: &LinearCastOptions<V>,
-) -> (Ray<V>, V::Scalar, RayCastOptions<V>) {
+) -> (CastRay<V>, RayCastOptions<V>) {
     let zero = V::Scalar::ZERO;
     let mut wanted = RayCastOptions::lean()
         .with_max_lambda(options.max_time)
@@ -281,7 +263,7 @@ fn ray_of<V: Vector>(
     // What the difference of the velocities loses.
     let lost = lost_in_sum(motion.velocity_b, -motion.velocity_a);
     let direction_error = if lost == V::ZERO { zero } else { lost.norm() / ray.direction.norm() };
-    (ray, direction_error, wanted)
+    (CastRay { ray, direction_error, part: Part::Whole }, wanted)
 }
 
 /// A hit of bodies that are apart at the start.

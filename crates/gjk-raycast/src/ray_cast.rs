@@ -4,7 +4,10 @@ use convex_support::{LineQuery, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
 use crate::body::{CastBody, Measures, Single};
-use crate::cast::{Cast, CastHit, LocalRay, Part, RayOf, cast, certain, certain_closely, is_plain, settle_start, show};
+use crate::cast::{
+    Approach, Cast, CastHit, CastRay, LocalRay, Part, RayOf, cast, certain, certain_closely, is_plain, settle_start,
+    show,
+};
 use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::power_of_two_near;
@@ -124,8 +127,10 @@ compiled_once! {
         if options.min_lambda > Scalar::ZERO {
             return late(body, ray, *options, observer);
         }
-        let mut cast = cast(body, ray, Scalar::ZERO, Part::Whole, options, observer);
-        settle_start(&mut cast, shape, Scalar::ZERO, RayOf::Point(ray.source), ray.direction, options);
+        let mut cast = cast(body, CastRay::of(ray, Part::Whole), options, observer);
+        let b = RayOf::Point(ray.source);
+        let approach = Approach { a: shape, skin: Scalar::ZERO, b, direction: ray.direction };
+        settle_start(&mut cast, approach, options);
         answer(cast, ray)
     }
 }
@@ -151,7 +156,7 @@ fn late<V: Vector>(
     let slack = if begin <= options.max_lambda { error + error } else { zero };
     let mut from = |begin| {
         let wanted = options.with_max_lambda(options.max_lambda - begin);
-        answer(cast(body, ray, Scalar::ZERO, Part::From(begin), &wanted, observer), ray)
+        answer(cast(body, CastRay::of(ray, Part::From(begin)), &wanted, observer), ray)
     };
     let early = from(begin - slack);
     match early.outcome {
@@ -164,7 +169,16 @@ fn late<V: Vector>(
             let status = Status::Converged.of(&outcome, upper < V::Scalar::infinity());
             RayCast { outcome, lower: begin, upper, status, iterations }
         }
-        _ => of_whole_ray(early, ray, options, [begin - slack, error]),
+        _ => {
+            let (mut answer, start) = (early, begin - slack);
+            if let Outcome::Hit(hit) = &mut answer.outcome {
+                hit.lambda = (start + hit.lambda).max(begin).min(options.max_lambda);
+                hit.point = ray.at(hit.lambda);
+            }
+            answer.lower = (start + answer.lower - error).max(begin);
+            answer.upper = start + answer.upper + error;
+            answer
+        }
     }
 }
 
@@ -181,22 +195,4 @@ fn answer<V: Vector>(cast: Cast<V>, ray: Ray<V>) -> RayCast<V> {
     };
     let status = cast.status.of(&outcome, cast.upper < V::Scalar::infinity());
     RayCast { outcome, lower: cast.lower, upper: cast.upper, status, iterations: cast.iterations }
-}
-
-/// The answer in the parameters of the whole ray, for a part of it that begins at a parameter which is known to within
-/// an `error`.
-fn of_whole_ray<V: Vector>(
-    mut answer: RayCast<V>,
-    ray: Ray<V>,
-    options: RayCastOptions<V>,
-    [start, error]: [V::Scalar; 2],
-) -> RayCast<V> {
-    let begin = options.min_lambda;
-    if let Outcome::Hit(hit) = &mut answer.outcome {
-        hit.lambda = (start + hit.lambda).max(begin).min(options.max_lambda);
-        hit.point = ray.at(hit.lambda);
-    }
-    answer.lower = (start + answer.lower - error).max(begin);
-    answer.upper = start + answer.upper + error;
-    answer
 }

@@ -3,9 +3,12 @@
 #[cfg(feature = "rayon")]
 use alloc::vec::Vec;
 
-use convex_support::SupportMap;
+use convex_support::numerics::widest::{Loop, widest};
+use convex_support::{CrossedByLine, LINES, Lines, Scalar, SupportMap, Vector, compiled_once};
+use num_traits::Float as _;
 
-use crate::{Ray, RayCast, RayCastError, RayCastOptions, ray_cast};
+use crate::cast::is_plain;
+use crate::{Outcome, Ray, RayCast, RayCastError, RayCastOptions, ray_cast};
 
 /// Rays after which a batch forgets the warm start, so that its pieces can be cast on any number of threads and come out
 /// alike.
@@ -59,4 +62,170 @@ pub fn par_ray_casts<S: SupportMap + Sync + ?Sized>(
 ) -> Vec<Result<RayCast<S::Vector>, RayCastError>> {
     use rayon::prelude::*;
     rays.par_chunks(RAYS_PER_PIECE).flat_map_iter(|piece| ray_casts(target, piece, options)).collect()
+}
+
+/// Where a ray enters a shape, in numbers alone: what columns are made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
+pub struct RayEntry<V: Vector> {
+    /// The parameter of the hit. Infinity is a certain miss, and NaN says that the cast ended
+    /// [undecided](Outcome::Undecided).
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub lambda: V::Scalar,
+    /// As [`RayCast::lower`].
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub lower: V::Scalar,
+    /// As [`RayCast::upper`].
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub upper: V::Scalar,
+    /// The unit outward normal where the ray enters; zero where the source is inside, and of a miss.
+    pub normal: V,
+}
+
+impl<V: Vector> From<RayCast<V>> for RayEntry<V> {
+    fn from(RayCast { outcome, lower, upper, .. }: RayCast<V>) -> Self {
+        let (lambda, normal) = match outcome {
+            Outcome::Hit(hit) => (hit.lambda, hit.normal.unwrap_or_default()),
+            Outcome::Miss(_) => (V::Scalar::infinity(), V::ZERO),
+            Outcome::Undecided => (V::Scalar::nan(), V::ZERO),
+        };
+        Self { lambda, lower, upper, normal }
+    }
+}
+
+/// Casts many rays against one shape, and writes where each enters into a slice. Nothing is allocated.
+///
+/// Each answer is that of [`ray_cast`] to the last bit, whatever its neighbours are: the same λ, bounds and normal.
+/// Balls, boxes, capsules and hulls with facets, and any of these posed, are asked of several rays at a time, and the
+/// rays that are in doubt then are cast alone, as are those at other shapes. For a shape without a [closed
+/// form](CrossedByLine) there is [`ray_casts`](crate::ray_casts). With the feature `simd`, the widest vector
+/// instructions of the processor are chosen at run time.
+///
+/// ```
+/// use convex_support::{Ball, glam::DVec3};
+/// use gjk_raycast::{Ray, RayCastOptions, RayEntry, ray_entries_into};
+///
+/// let ball = Ball::new(1.0)?;
+/// let rays = [0.0, 0.6, 2.0].map(|y| Ray { source: DVec3::new(-5.0, y, 0.0), direction: DVec3::X });
+/// let mut entries = [RayEntry::default(); 3];
+/// ray_entries_into(&ball, &rays, RayCastOptions::default(), &mut entries)?;
+/// assert_eq!(entries[0].lambda, 4.0);
+/// assert!(entries[1].lower <= 4.2 && 4.2 <= entries[1].upper);
+/// assert_eq!(entries[2].lambda, f64::INFINITY);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// That of the first ray that [`ray_cast`] has one for; its answer is NaN, and all others are written.
+///
+/// # Panics
+/// If there are not as many answers as rays.
+pub fn ray_entries_into<S: CrossedByLine + ?Sized>(
+    target: &S,
+    rays: &[Ray<S::Vector>],
+    options: RayCastOptions<S::Vector>,
+    entries: &mut [RayEntry<S::Vector>],
+) -> Result<(), RayCastError> {
+    assert_eq!(rays.len(), entries.len(), "as many answers as rays");
+    let mut by_lanes = is_plain(&options) && !options.max_lambda.is_nan();
+    let mut lines = Lines::default();
+    let mut outcome = Ok(());
+    for (rays, entries) in rays.chunks(LINES).zip(entries.chunks_mut(LINES)) {
+        if by_lanes {
+            gather(rays, &mut lines);
+            by_lanes = target.certain_crossings(&mut lines);
+        }
+        if by_lanes {
+            scatter(&mut lines, options.max_lambda, entries);
+            if !lines.any_in_doubt() {
+                continue;
+            }
+        }
+        for (line, (&ray, entry)) in rays.iter().zip(entries).enumerate() {
+            if by_lanes && lines.known[line] != Scalar::ZERO {
+                continue;
+            }
+            *entry = ray_cast(target, ray, options).map_or_else(
+                |error| {
+                    outcome = outcome.and(Err(error));
+                    let nan = <S::Vector as Vector>::Scalar::nan();
+                    RayEntry { lambda: nan, lower: nan, upper: nan, normal: <S::Vector as Vector>::splat(nan) }
+                },
+                RayEntry::from,
+            );
+        }
+    }
+    outcome
+}
+
+compiled_once! {
+    #[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
+    /// The lines of up to [`LINES`] rays, the last as often as there is room.
+    fn gather<V>(rays: &[Ray<V>], lines: &mut Lines<<V as Vector>::Scalar>) -> () {
+        struct Gather<'a, V: Vector>(&'a [Ray<V>; LINES], &'a mut Lines<V::Scalar>);
+        impl<V: Vector> Loop for Gather<'_, V> {
+            #[inline(always)]
+            fn run(self) {
+                let Self(rays, lines) = self;
+                for line in 0..LINES {
+                    lines.error[line] = Scalar::ZERO;
+                    for i in 0..V::DIM {
+                        lines.source[i][line] = rays[line].source.get(i);
+                        lines.direction[i][line] = rays[line].direction.get(i);
+                    }
+                }
+            }
+        }
+        let Some(&last) = rays.last() else { return };
+        match rays.try_into() {
+            Ok(rays) => widest(Gather(rays, lines)),
+            Err(_) => {
+                let mut all = [last; LINES];
+                all[..rays.len()].copy_from_slice(rays);
+                widest(Gather(&all, lines));
+            }
+        }
+    }
+}
+
+compiled_once! {
+    /// The answers that are known of rays that end at some parameter; what is not known of a ray, though of its line,
+    /// is unknown from here on.
+    fn scatter<V>(
+        lines: &mut Lines<<V as Vector>::Scalar>,
+        end: <V as Vector>::Scalar,
+        entries: &mut [RayEntry<V>],
+    ) -> () {
+        struct Scatter<'a, V: Vector>(&'a mut Lines<V::Scalar>, V::Scalar, &'a mut [RayEntry<V>]);
+        impl<V: Vector> Loop for Scatter<'_, V> {
+            #[inline(always)]
+            fn run(self) {
+                let Self(lines, end, entries) = self;
+                let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+                for (line, slot) in entries.iter_mut().enumerate().take(LINES) {
+                    let [lower, upper] = [lines.bounds[0][line], lines.bounds[1][line]];
+                    let (lambda, is_missed) = (lines.entry[line], lines.known[line] < zero);
+                    // As `certain` of one ray.
+                    let is_after_end = !(lambda <= end);
+                    let begin = if is_after_end { end } else { zero };
+                    let is_certain = is_missed | ((lower > begin) & (upper < infinity));
+                    lines.known[line] = if is_certain { lines.known[line] } else { zero };
+                    let is_hit = !(is_missed | is_after_end);
+                    let of_hit = |x: V::Scalar, else_: V::Scalar| if is_hit { x } else { else_ };
+                    *slot = RayEntry {
+                        lambda: of_hit(lambda, infinity),
+                        lower: of_hit(lower, infinity),
+                        upper: of_hit(upper, infinity),
+                        normal: V::from_fn(|i| of_hit(lines.normal[i][line], zero)),
+                    };
+                }
+            }
+        }
+        widest(Scatter(lines, end, entries));
+    }
 }

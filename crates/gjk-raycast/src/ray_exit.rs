@@ -4,7 +4,7 @@ use convex_support::{Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use crate::body::{CastBody, Measures, Single};
-use crate::cast::{CastHit, LocalRay, Part, cast};
+use crate::cast::{CastHit, CastRay, LocalRay, Part, cast};
 use crate::observer::Observer;
 use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, Status, ray_cast};
 
@@ -86,7 +86,7 @@ fn searched<V: Vector>(body: &mut dyn CastBody<Vector = V>, ray: Ray<V>, &option
         let (outcome, status) = (Outcome::Undecided, Status::Stalled);
         return RayExit { outcome, lower: -infinity, upper: infinity, status, iterations: 0 };
     }
-    let cast = cast(body, ray, Scalar::ZERO, Part::Reversed, &wanted, &mut Observer::none());
+    let cast = cast(body, CastRay::of(ray, Part::Reversed), &wanted, &mut Observer::none());
     let forward = LocalRay::new(ray, origin, cast.scale);
     let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
     let (lower, upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);

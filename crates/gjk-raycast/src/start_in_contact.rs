@@ -5,7 +5,10 @@ use num_traits::Float as _;
 
 use crate::shape::{Shape, WithoutLines};
 use crate::signed_distance::signed_distance_of_any;
-use crate::{Distance, DistanceOptions, LinearCastOptions, Motion, SignedDistance, SignedDistanceOptions, distance};
+use crate::{
+    DistanceOptions, Impact, LinearCast, LinearCastOptions, Motion, Outcome, SignedDistance, SignedDistanceOptions,
+    distance,
+};
 
 /// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
 const SLIDES: f64 = 16.0;
@@ -25,21 +28,26 @@ pub(crate) struct StartingPair<'s, V: Vector> {
 }
 
 impl<V: Vector> StartingPair<'_, V> {
-    /// The distance at the start.
+    /// Answers a hit at the start by a point of both shapes, and the normal if they only touch: the cast knows where the
+    /// motion enters, which is behind the start or, sliding, ahead of it.
     #[cold]
     #[inline(never)]
-    pub(crate) fn distance(&self, options: &LinearCastOptions<V>) -> Distance<V> {
-        let wanted = DistanceOptions::new().with_max_iterations(options.max_iterations);
-        distance(self.a, self.b, wanted.with_sub_algorithm(options.sub_algorithm))
-    }
-
-    /// The normal of contact if the shapes only touch, and `None` if they certainly overlap by more than that; with the
-    /// number of support points computed.
-    #[cold]
-    #[inline(never)]
-    pub(crate) fn touching_normal(&self, options: &LinearCastOptions<V>) -> (Option<V>, usize) {
-        let start = self.signed_distance(options, V::Scalar::ZERO);
-        ((start.upper >= self.target).then_some(start.normal), start.iterations)
+    pub(crate) fn touch(&self, answer: &mut LinearCast<V>, options: &LinearCastOptions<V>) {
+        let zero = V::Scalar::ZERO;
+        let left = |taken: usize| options.max_iterations.saturating_sub(taken);
+        let wanted = DistanceOptions::new().with_max_iterations(left(answer.iterations));
+        let at_start = distance(self.a, self.b, wanted.with_sub_algorithm(options.sub_algorithm));
+        answer.iterations += at_start.iterations;
+        let max_iterations = left(answer.iterations);
+        let start = self.signed_distance(&LinearCastOptions { max_iterations, ..*options }, zero);
+        answer.iterations += start.iterations;
+        let only_touches = start.upper >= self.target;
+        if !only_touches {
+            // They are certainly deeper than touching, whatever the motion.
+            answer.upper = zero;
+        }
+        let normal = only_touches.then_some(start.normal);
+        answer.outcome = Outcome::Hit(Impact { time: zero, point: at_start.point_b, normal });
     }
 
     /// The signed distance at the start; the search stops as soon as the depth is certain to exceed a limit.

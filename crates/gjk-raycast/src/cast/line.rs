@@ -38,6 +38,23 @@ pub(crate) enum Part<S> {
     Reversed,
 }
 
+/// What is cast: a part of a ray, given in the world.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CastRay<V: Vector> {
+    pub(crate) ray: Ray<V>,
+    /// What the direction may be wrong by, as a part of its length.
+    pub(crate) direction_error: V::Scalar,
+    /// Parameters are counted from where it begins.
+    pub(crate) part: Part<V::Scalar>,
+}
+
+impl<V: Vector> CastRay<V> {
+    /// A part of a ray as it is given.
+    pub(crate) fn of(ray: Ray<V>, part: Part<V::Scalar>) -> Self {
+        Self { ray, direction_error: Scalar::ZERO, part }
+    }
+}
+
 /// A ray seen from a body, in the body's unit: a line, based where it is closest to the body's origin, and where on it
 /// the ray begins. However far the source, only numbers of the body's size take part in what follows.
 #[derive(Clone, Copy, Debug)]

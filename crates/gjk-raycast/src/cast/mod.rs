@@ -7,7 +7,9 @@ mod bracket;
 mod certain;
 mod line;
 mod outline;
+mod pieces;
 mod portal;
+mod ray_frame;
 mod start;
 
 use convex_support::{Scalar, Vector};
@@ -17,16 +19,16 @@ use crate::body::{CastBody, PointPair};
 use crate::extra::in_static;
 use crate::observer::Observer;
 use crate::simplex::Simplex;
-use crate::{CastMethod, Miss, Outcome, Ray, RayCastOptions, Status};
+use crate::{CastMethod, Miss, Outcome, RayCastOptions, Status};
 use algorithm_3::{algorithm_3, touch_beside};
-use bracket::Bracket;
+use bracket::{Bracket, EntryProof};
 use certain::at_certain_entry;
 pub(crate) use certain::{certain, certain_closely, is_plain, show};
-pub(crate) use line::{LocalRay, Part};
+pub(crate) use line::{CastRay, LocalRay, Part};
 use outline::bound_entry;
 use portal::portal;
 use start::SettleFn;
-pub(crate) use start::{RayOf, settle_start};
+pub(crate) use start::{Approach, RayOf, settle_start};
 
 /// What is quicker than Algorithm 3 alone, and the second look at what that leaves open.
 #[allow(clippy::type_complexity, reason = "it is said once")]
@@ -36,14 +38,7 @@ pub(crate) struct Quicker<V: Vector> {
     touch_beside: fn(&mut Bracket<'_, V>, &Simplex<V>, V, V::Scalar, Option<V>) -> Option<RayContact<V>>,
 }
 
-type CastFn<V> = fn(
-    &mut dyn CastBody<Vector = V>,
-    Ray<V>,
-    <V as Vector>::Scalar,
-    Part<<V as Vector>::Scalar>,
-    &RayCastOptions<V>,
-    &mut Observer<'_, V>,
-) -> Cast<V>;
+type CastFn<V> = fn(&mut dyn CastBody<Vector = V>, CastRay<V>, &RayCastOptions<V>, &mut Observer<'_, V>) -> Cast<V>;
 
 impl<V: Vector> Quicker<V> {
     pub(crate) const TABLE: Self = Self { cast: cast_by::<V, true>, settle: start::settle, touch_beside };
@@ -54,22 +49,19 @@ in_static!(Quicker);
 /// Support points until a search that begins with what the last frame tells counts as in doubt.
 const MAX_WARM: usize = 32;
 
-/// Casts a part of a ray, given in the world, against a body. Parameters are counted from where that begins. The
-/// direction may be wrong by some part of its length.
+/// Casts a part of a ray against a body.
 #[inline(always)]
 pub(crate) fn cast<V: Vector>(
     body: &mut dyn CastBody<Vector = V>,
-    ray: Ray<V>,
-    direction_error: V::Scalar,
-    part: Part<V::Scalar>,
+    ray: CastRay<V>,
     options: &RayCastOptions<V>,
     observer: &mut Observer<'_, V>,
 ) -> Cast<V> {
     let cast = options.extra.get().map_or(cast_by::<V, false> as CastFn<V>, |extra| extra.cast);
     if options.warm_start.is_some() {
-        warm_cast(cast, body, ray, direction_error, part, options, observer)
+        warm_cast(cast, body, ray, options, observer)
     } else {
-        cast(body, ray, direction_error, part, options, observer)
+        cast(body, ray, options, observer)
     }
 }
 
@@ -78,14 +70,12 @@ pub(crate) fn cast<V: Vector>(
 fn warm_cast<V: Vector>(
     cast: CastFn<V>,
     body: &mut dyn CastBody<Vector = V>,
-    ray: Ray<V>,
-    direction_error: V::Scalar,
-    part: Part<V::Scalar>,
+    ray: CastRay<V>,
     options: &RayCastOptions<V>,
     observer: &mut Observer<'_, V>,
 ) -> Cast<V> {
     let told = RayCastOptions { max_iterations: options.max_iterations.min(MAX_WARM), ..*options };
-    let warm = cast(body, ray, direction_error, part, &told, observer);
+    let warm = cast(body, ray, &told, observer);
     let is_known = match warm.outcome {
         Outcome::Hit(_) => warm.upper < V::Scalar::infinity(),
         Outcome::Miss(_) => true,
@@ -95,14 +85,7 @@ fn warm_cast<V: Vector>(
         return warm;
     }
     let max_iterations = options.max_iterations - warm.iterations;
-    let cold = cast(
-        body,
-        ray,
-        direction_error,
-        part,
-        &RayCastOptions { warm_start: None, max_iterations, ..*options },
-        observer,
-    );
+    let cold = cast(body, ray, &RayCastOptions { warm_start: None, max_iterations, ..*options }, observer);
     Cast { iterations: warm.iterations + cold.iterations, ..cold }
 }
 
@@ -110,13 +93,11 @@ fn warm_cast<V: Vector>(
 #[inline(never)]
 fn cast_by<V: Vector, const ALL: bool>(
     body: &mut dyn CastBody<Vector = V>,
-    ray: Ray<V>,
-    direction_error: V::Scalar,
-    part: Part<V::Scalar>,
+    ray: CastRay<V>,
     options: &RayCastOptions<V>,
     observer: &mut Observer<'_, V>,
 ) -> Cast<V> {
-    let mut bracket = Bracket::new(body, ray, direction_error, part, options, observer);
+    let mut bracket = Bracket::new(body, ray, options, observer);
     let found = match bracket.enter_ball() {
         Ok(()) if bracket.error < V::Scalar::infinity() => search::<V, ALL>(&mut bracket),
         // Of numbers out of range nothing is known.
@@ -138,7 +119,7 @@ fn search<V: Vector, const ALL: bool>(bracket: &mut Bracket<'_, V>) -> Result<Ra
             found => return found,
         }
         match if V::DIM == 3 { portal(bracket) } else { Err(Stop::InDoubt) } {
-            Err(Stop::InDoubt | Stop::Touches(_)) => {}
+            Err(Stop::InDoubt) => {}
             found => return found,
         }
         if V::DIM == 3 && bracket.options.warm_start.is_some() {
@@ -146,7 +127,7 @@ fn search<V: Vector, const ALL: bool>(bracket: &mut Bracket<'_, V>) -> Result<Ra
         }
     }
     // In the plane this is the search. Elsewhere it is what is left where rounding decides.
-    bracket.doubt_entry();
+    bracket.entry = EntryProof::InDoubt;
     algorithm_3(bracket)
 }
 
@@ -169,8 +150,6 @@ pub(crate) enum Stop<V> {
     Exhausted(Status),
     /// This search cannot tell; another may.
     InDoubt,
-    /// Nor can it here, where the line touches the body, to rounding; moved by this vector it runs inside.
-    Touches(V),
 }
 
 /// What [`cast`] found; λ in units of the ray's direction.
@@ -225,9 +204,9 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
             (Outcome::Miss(Miss { axis: bracket.axis_of_miss(n) }), (infinity, infinity), Status::Converged)
         }
         Err(Stop::Exhausted(status)) => (Outcome::Undecided, bracket.bounds(None), status),
-        Err(Stop::InDoubt | Stop::Touches(_)) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
+        Err(Stop::InDoubt) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
     };
     let is_open = matches!(outcome, Outcome::Hit(_)) && bracket.is_worth_another_look();
-    let (iterations, scale) = (bracket.iterations(), bracket.scale);
+    let (iterations, scale) = (bracket.iterations, bracket.scale);
     Cast { outcome, lower, upper, status, iterations, scale, is_open }
 }

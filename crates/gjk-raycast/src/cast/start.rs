@@ -16,54 +16,41 @@ use crate::separation::{FromContact, NearContact, look_after, near_contact_of};
 use crate::shape::{Shape, WithoutLines};
 use crate::{Miss, Outcome, RayCastOptions, Status};
 
+/// What a ray is of, for a second look at it.
+pub(crate) struct Approach<'s, V: Vector> {
+    /// The target, which is swept by a ball, its skin.
+    pub(crate) a: Shape<'s, V>,
+    pub(crate) skin: V::Scalar,
+    /// What draws the ray as it moves along its direction.
+    pub(crate) b: RayOf<'s, V>,
+    pub(crate) direction: V,
+}
+
 /// Who draws a ray as it moves: a shape, or the point at the ray's source.
 pub(crate) enum RayOf<'s, V: Vector> {
     Shape(Shape<'s, V>),
     Point(V),
 }
 
-/// Decides about a hit that may be at the source, or about a search that stalled before it left it, of the ray that `b`
-/// draws as it moves along `direction` towards `a` swept by a ball, its skin.
+/// Decides about a hit that may be at the source, or elsewhere and open, or about a search that stalled before it left
+/// the source.
 #[inline(always)]
-pub(crate) fn settle_start<V: Vector>(
-    cast: &mut Cast<V>,
-    a: Shape<'_, V>,
-    skin: V::Scalar,
-    b: RayOf<'_, V>,
-    direction: V,
-    options: &RayCastOptions<V>,
-) {
-    let zero = V::Scalar::ZERO;
-    let is_at_start = match &cast.outcome {
-        Outcome::Hit(_) => cast.lower == zero,
-        Outcome::Undecided => cast.status == Status::Stalled && cast.lower == zero,
-        Outcome::Miss(_) => false,
-    };
-    let is_to_be_settled = is_at_start && cast.upper > zero;
-    if (is_to_be_settled || cast.is_open)
+pub(crate) fn settle_start<V: Vector>(cast: &mut Cast<V>, approach: Approach<'_, V>, options: &RayCastOptions<V>) {
+    if (cast.is_open || cast.is_to_be_settled())
         && cast.iterations < options.max_iterations
         && let Some(extra) = options.extra.get()
     {
-        (extra.settle)(cast, a, skin, b, direction, options, is_to_be_settled);
+        (extra.settle)(cast, approach, options);
     }
 }
 
-pub(super) type SettleFn<V> =
-    fn(&mut Cast<V>, Shape<'_, V>, <V as Vector>::Scalar, RayOf<'_, V>, V, &RayCastOptions<V>, bool);
+pub(super) type SettleFn<V> = fn(&mut Cast<V>, Approach<'_, V>, &RayCastOptions<V>);
 
 /// The second look at a cast whose hit may be at the source, or elsewhere and open.
 #[cold]
 #[inline(never)]
-pub(super) fn settle<V: Vector>(
-    cast: &mut Cast<V>,
-    a: Shape<'_, V>,
-    skin: V::Scalar,
-    b: RayOf<'_, V>,
-    direction: V,
-    options: &RayCastOptions<V>,
-    is_to_be_settled: bool,
-) {
-    let left = options.max_iterations - cast.iterations;
+pub(super) fn settle<V: Vector>(cast: &mut Cast<V>, approach: Approach<'_, V>, options: &RayCastOptions<V>) {
+    let Approach { a, skin, b, direction } = approach;
     let Ok(a) = Rounded::new(a, skin) else { return };
     let (point, source);
     let b: Shape<'_, V> = match b {
@@ -75,37 +62,57 @@ pub(super) fn settle<V: Vector>(
             &source
         }
     };
-    let (a, b) = (&WithoutLines(&a), b);
-    if !is_to_be_settled {
-        if let Outcome::Hit(CastHit { lambda, .. }) = cast.outcome {
-            let after = after_hit(a, b, direction, lambda, left);
-            cast.iterations += after.iterations;
-            cast.upper = cast.upper.min(after.latest);
-        }
-        return;
+    let shapes = [&WithoutLines(&a) as Shape<'_, V>, b];
+    let mut looks = Looks { iterations: 0, max_iterations: options.max_iterations - cast.iterations };
+    if cast.is_to_be_settled() {
+        settle_at_start(cast, shapes, direction, options.max_lambda, &mut looks);
+    } else if let Outcome::Hit(CastHit { lambda, .. }) = cast.outcome
+        && let Some(latest) = latest_after_hit(shapes, direction, lambda, &mut looks)
+    {
+        cast.upper = cast.upper.min(latest);
     }
-    let start = start(a, b, direction, left);
-    cast.iterations += start.iterations;
-    match start.way {
-        Way::Touches { within } => cast.touch(within, start.spot),
-        Way::Unknown => {}
-        Way::Leaves { axis } => cast.miss(axis),
-        // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
-        Way::Enters { lambda, axis, lower, .. } if lambda > options.max_lambda => {
-            cast.miss(axis);
-            if lower <= options.max_lambda {
-                cast.lower = lower;
-            }
-        }
-        Way::Enters { lambda, axis, lower, entry } => cast.enter(lambda, axis, lower, entry, start.spot),
-    }
+    cast.iterations += looks.iterations;
 }
 
-/// How the bodies are to one another where the cast begins.
-struct StartLook<V: Vector> {
-    way: Way<V>,
-    spot: Spot<V>,
-    iterations: usize,
+/// Decides by what is known of the bodies where the cast begins.
+fn settle_at_start<V: Vector>(
+    cast: &mut Cast<V>,
+    [a, b]: [Shape<'_, V>; 2],
+    direction: V,
+    max_lambda: V::Scalar,
+    looks: &mut Looks,
+) {
+    let zero = V::Scalar::ZERO;
+    let Some(near) = near_contact_of(a, b, looks.max_iterations) else { return };
+    looks.iterations = near.iterations;
+    let spot = Spot { source: -near.frame.offset, points: near.points, scale: near.frame.scale };
+    // The bodies are apart by `gap − λ·n·d` along the normal: the sign of the product is exact. The axis is the unit
+    // vector from the target to the source.
+    let axis = -near.normal;
+    let closing = dot_minus((0..V::DIM).map(|i| (near.normal.get(i), direction.get(i))), zero);
+    if !near.is_separated() {
+        // The source is in the target, to the error it is known to, or nothing is known.
+        if near.overlap().is_some() {
+            cast.touch(latest_entry([a, b], direction, closing, &near, looks), spot);
+        }
+    } else if closing <= zero {
+        cast.miss(axis);
+    } else {
+        // The ray crosses the plane between them at λ, and not before `lower`, by what the quotient loses.
+        let at = |gap: V::Scalar| gap * near.frame.scale / closing;
+        let (lambda, lower) = (at(near.gap), at(near.lower));
+        let lower = lower - roundings(8.0, lower);
+        let entry = entry([a, b], direction, closing, (&from_contact(&near, zero), zero), looks);
+        // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
+        if lambda > max_lambda {
+            cast.miss(axis);
+            if lower <= max_lambda {
+                cast.lower = lower;
+            }
+        } else {
+            cast.enter(lambda, axis, lower, entry, spot);
+        }
+    }
 }
 
 /// Where the source is, relative to the target's origin, the points of both closest to one another, and the unit of
@@ -115,52 +122,6 @@ struct Spot<V: Vector> {
     source: V,
     points: PointPair<V>,
     scale: V::Scalar,
-}
-
-/// How a ray goes on from a source near the target. The axis is a unit vector from the target to the source, along
-/// which they are apart.
-enum Way<V: Vector> {
-    /// The source is in the target, to the error it is known to; and the ray is in it for certain at this λ at the
-    /// latest.
-    Touches { within: V::Scalar },
-    /// Neither that nor a plane between them is found.
-    Unknown,
-    /// It is apart, and the ray comes no nearer along the axis.
-    Leaves { axis: V },
-    /// It is apart, and the ray crosses the plane between them at λ, and not before `lower`.
-    Enters { lambda: V::Scalar, axis: V, lower: V::Scalar, entry: LatestEntry<V::Scalar> },
-}
-
-#[cold]
-#[inline(never)]
-fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iterations: usize) -> StartLook<V> {
-    let zero = V::Scalar::ZERO;
-    let Some(near) = near_contact_of(a, b, max_iterations) else {
-        let spot = Spot { source: V::ZERO, points: PointPair::default(), scale: V::Scalar::ONE };
-        return StartLook { way: Way::Unknown, spot, iterations: 0 };
-    };
-    // The bodies are apart by `gap − λ·n·d` along the normal: the sign of the product is exact.
-    let axis = -near.normal;
-    let closing = dot_minus((0..V::DIM).map(|i| (near.normal.get(i), direction.get(i))), zero);
-    let mut looks = Looks { iterations: near.iterations, max_iterations };
-    let way = if !near.is_separated() {
-        if near.overlap().is_some() {
-            Way::Touches { within: latest_entry([a, b], direction, closing, &near, &mut looks) }
-        } else {
-            Way::Unknown
-        }
-    } else if closing <= zero {
-        Way::Leaves { axis }
-    } else {
-        let at = |gap: V::Scalar| gap * near.frame.scale / closing;
-        // What the quotient loses.
-        let lower = at(near.lower);
-        let lower = lower - roundings(8.0, lower);
-        let entry = entry([a, b], direction, closing, (&from_contact(&near, zero), zero), &mut looks);
-        Way::Enters { lambda: at(near.gap), axis, lower, entry }
-    };
-    let spot = Spot { source: -near.frame.offset, points: near.points, scale: near.frame.scale };
-    StartLook { way, spot, iterations: looks.iterations }
 }
 
 /// A bound on the λ at which the ray is in the target first, where the source is not known to be apart from it;
@@ -312,42 +273,41 @@ fn entry<V: Vector>(
     best
 }
 
-/// What is known of a hit where it is.
-struct AfterHit<S> {
-    /// The λ of the hit, at the latest; infinite where that is not known.
-    latest: S,
-    iterations: usize,
-}
-
-/// Bounds a hit away from the source from above by what is known of the bodies there, where that is less than the slope
-/// at which the ray meets one plane may tell: they are known to so large an error that the next edge may be within it.
-#[cold]
-#[inline(never)]
-fn after_hit<V: Vector>(
-    a: Shape<'_, V>,
-    b: Shape<'_, V>,
+/// The λ of a hit away from the source, at the latest, by what is known of the bodies there, where that is less than the
+/// slope at which the ray meets one plane may tell: they are known to so large an error that the next edge may be within
+/// it.
+fn latest_after_hit<V: Vector>(
+    [a, b]: [Shape<'_, V>; 2],
     direction: V,
     lambda: V::Scalar,
-    max_iterations: usize,
-) -> AfterHit<V::Scalar> {
-    let unknown = AfterHit { latest: Float::infinity(), iterations: 0 };
+    looks: &mut Looks,
+) -> Option<V::Scalar> {
     let step = direction * lambda;
-    let Ok(there) = Posed::translated(b, step) else { return unknown };
+    let there = Posed::translated(b, step).ok()?;
     let there = WithoutLines(&there);
-    let Some(near) = near_contact_of(a, &there, max_iterations) else {
-        return unknown;
-    };
-    let mut looks = Looks { iterations: near.iterations, max_iterations };
+    let near = near_contact_of(a, &there, looks.max_iterations)?;
+    looks.iterations = near.iterations;
     // The step and the direction are rounded, coordinate by coordinate.
     let astray = roundings(8.0, step.norm());
     let closing = near.normal.dot(direction);
     let speed = if closing > V::Scalar::ZERO { closing } else { direction.norm() };
-    let latest =
-        lambda + entry([a, &there], direction, speed, (&from_contact(&near, astray), astray), &mut looks).certain();
-    AfterHit { latest: latest + roundings(4.0, latest), iterations: looks.iterations }
+    let latest = lambda + entry([a, &there], direction, speed, (&from_contact(&near, astray), astray), looks).certain();
+    Some(latest + roundings(4.0, latest))
 }
 
 impl<V: Vector> Cast<V> {
+    /// Whether it hits at the source, or stalled there, and is not known to begin inside.
+    #[inline(always)]
+    fn is_to_be_settled(&self) -> bool {
+        let zero = V::Scalar::ZERO;
+        let may_be_at_start = match &self.outcome {
+            Outcome::Hit(_) => true,
+            Outcome::Undecided => self.status == Status::Stalled,
+            Outcome::Miss(_) => false,
+        };
+        may_be_at_start && self.lower == zero && self.upper > zero
+    }
+
     fn miss(&mut self, axis: V) {
         (self.lower, self.upper) = (Float::infinity(), Float::infinity());
         (self.outcome, self.status) = (Outcome::Miss(Miss { axis }), Status::Converged);
