@@ -9,9 +9,11 @@ use std::process::{Command, Stdio};
 
 use super::{cargo, write_program};
 
-/// What the programs stand on beside the libraries. `paint-stack` fills the memory of the stack before `main`, so that
+/// How the programs are built, and what they stand on beside the libraries. `paint-stack` fills the memory of the stack before `main`, so that
 /// what was used shows afterwards.
-const RUNTIME: &str = "cortex-m = \"0.7\"
+const RUNTIME: &str = "opt-level = \"s\"
+[dependencies]
+cortex-m = \"0.7\"
 cortex-m-rt = { version = \"0.7\", features = [\"paint-stack\"] }
 cortex-m-semihosting = \"0.5\"
 panic-halt = \"1\"

@@ -225,7 +225,7 @@ fn build(program: &Program, folder: &Path) -> Result<Cost, String> {
         "fn input() -> f64 {{ std::env::args().count() as f64 }}\nfn main() {{\n{}\n}}\n",
         program.body.concat()
     );
-    let here = write_program(folder, program.name, program.import, "", &source).map_err(failed)?;
+    let here = write_program(folder, program.name, program.import, "[dependencies]\n", &source).map_err(failed)?;
     let tree = cargo(
         &here,
         &here.join("target"),
@@ -239,12 +239,13 @@ fn build(program: &Program, folder: &Path) -> Result<Cost, String> {
     Ok(Cost { packages: packages.len(), seconds, bytes })
 }
 
-/// Writes a program that imports a crate with some features, and `others`; its folder.
+/// Writes a program that imports a crate with some features; its folder. Its manifest has `more` lines: the rest of the
+/// release profile, and of the dependencies.
 fn write_program(
     folder: &Path,
     name: &str,
     import: Option<(&str, &str)>,
-    others: &str,
+    more: &str,
     source: &str,
 ) -> io::Result<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
@@ -254,8 +255,9 @@ fn write_program(
         format!("{name} = {{ path = {path:?}, default-features = false, features = [{features}] }}\n")
     });
     let manifest = format!(
-        "[package]\nname = \"program\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n[dependencies]\n\
-         {import}{others}[profile.release]\nlto = true\ncodegen-units = 1\nstrip = true\npanic = \"abort\"\n"
+        "[package]\nname = \"program\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n\
+         [profile.release]\nlto = true\ncodegen-units = 1\nstrip = true\npanic = \"abort\"\n\
+         {more}{import}"
     );
     fs::create_dir_all(here.join("src"))?;
     fs::write(here.join("Cargo.toml"), manifest)?;
