@@ -277,26 +277,18 @@ impl<H, S: Scalar> SingleAnswer<H, S> {
     }
 }
 
-impl<V: Vector> From<RayCast<V>> for SingleAnswer<RayHit<V>, V::Scalar> {
-    fn from(RayCast { outcome, lower, upper, status, .. }: RayCast<V>) -> Self {
-        let is_undecided = outcome.is_undecided();
-        Self { hit: outcome.hit().map(|hit| (hit.lambda, hit)), is_undecided, lower, upper, status }
-    }
+macro_rules! single_answers {
+    ($($Cast:ident to $Hit:ident at $value:ident),+) => {$(
+        impl<V: Vector> From<$Cast<V>> for SingleAnswer<$Hit<V>, V::Scalar> {
+            fn from($Cast { outcome, lower, upper, status, .. }: $Cast<V>) -> Self {
+                let is_undecided = outcome.is_undecided();
+                Self { hit: outcome.hit().map(|hit| (hit.$value, hit)), is_undecided, lower, upper, status }
+            }
+        }
+    )+};
 }
 
-impl<V: Vector> From<LinearCast<V>> for SingleAnswer<LinearHit<V>, V::Scalar> {
-    fn from(LinearCast { outcome, lower, upper, status, .. }: LinearCast<V>) -> Self {
-        let is_undecided = outcome.is_undecided();
-        Self { hit: outcome.hit().map(|hit| (hit.time, hit)), is_undecided, lower, upper, status }
-    }
-}
-
-impl<V: Vector> From<MotionCast<V>> for SingleAnswer<MotionHit<V>, V::Scalar> {
-    fn from(MotionCast { outcome, lower, upper, status, .. }: MotionCast<V>) -> Self {
-        let is_undecided = outcome.is_undecided();
-        Self { hit: outcome.hit().map(|hit| (hit.time, hit)), is_undecided, lower, upper, status }
-    }
-}
+single_answers!(RayCast to RayHit at lambda, LinearCast to LinearHit at time, MotionCast to MotionHit at time);
 
 /// A ray, with room for the rounding of its points: 32 ε of the source.
 fn swept_point<V: Vector>(ray: Ray<V>) -> SweptBox<V> {
