@@ -251,11 +251,7 @@ fn each<'a, V: Vector>(
     let Range { start, end } = range;
     let mut next = start;
     if has_lanes(options) {
-        next = if V::DIM == 2 {
-            by_eights::<V, 2>(start..end, &of, options, &mut tell)
-        } else {
-            by_eights::<V, 3>(start..end, &of, options, &mut tell)
-        };
+        next = in_dimension!(by_eights::<V>(start..end, &of, options, &mut tell));
     }
     for k in next..end {
         let (e1, e2) = of(k);

@@ -65,6 +65,13 @@ extern crate alloc;
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
+/// Calls a function of the vector type and of the dimension as a number.
+macro_rules! in_dimension {
+    ($function:ident::<$V:ident>($($argument:expr),*)) => {
+        if $V::DIM == 2 { $function::<$V, 2>($($argument),*) } else { $function::<$V, 3>($($argument),*) }
+    };
+}
+
 mod batch;
 mod clearance;
 mod derivative;

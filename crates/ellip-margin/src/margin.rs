@@ -90,7 +90,7 @@ pub fn free_margin_with<V: Vector>(
     observer: impl FnMut(f64, f64),
 ) -> Margin<V> {
     #[inline]
-    fn in_dimension<V: Vector, const N: usize>(
+    fn once<V: Vector, const N: usize>(
         e1: &Ellipsoid<V>,
         e2: &Ellipsoid<V>,
         options: MarginOptions,
@@ -99,11 +99,7 @@ pub fn free_margin_with<V: Vector>(
         let pair = Pair::<N>::new(e1, e2);
         answer(&pair, solve(&pair, 0.0, options, observer))
     }
-    if V::DIM == 2 {
-        in_dimension::<V, 2>(e1, e2, options, observer)
-    } else {
-        in_dimension::<V, 3>(e1, e2, options, observer)
-    }
+    in_dimension!(once::<V>(e1, e2, options, observer))
 }
 
 /// By the polynomial, refined where rounding could show in its margin, and where it would lose digits by the singular

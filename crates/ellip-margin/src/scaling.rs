@@ -66,7 +66,7 @@ pub struct Scaling<V: Vector> {
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 pub fn scaling<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginOptions) -> Scaling<V> {
-    if V::DIM == 2 { scaling_in::<V, 2>(e1, e2, options) } else { scaling_in::<V, 3>(e1, e2, options) }
+    in_dimension!(scaling_in::<V>(e1, e2, options))
 }
 
 fn scaling_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginOptions) -> Scaling<V> {

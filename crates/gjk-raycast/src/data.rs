@@ -63,19 +63,13 @@ struct HalfSpaceData<V, S> {
     offset: S,
 }
 
-impl<V: Vector + Serialize> Serialize for HalfSpace<V>
-where
-    V::Scalar: Serialize,
-{
+impl<V: VectorData> Serialize for HalfSpace<V> {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         HalfSpaceData { normal: self.normal(), offset: self.offset() }.serialize(serializer)
     }
 }
 
-impl<'de, V: Vector + Deserialize<'de>> Deserialize<'de> for HalfSpace<V>
-where
-    V::Scalar: Deserialize<'de>,
-{
+impl<'de, V: VectorData> Deserialize<'de> for HalfSpace<V> {
     fn deserialize<D: Deserializer<'de>>(data: D) -> Result<Self, D::Error> {
         let HalfSpaceData { normal, offset } = HalfSpaceData::deserialize(data)?;
         Self::new(normal, offset).map_err(D::Error::custom)
@@ -91,19 +85,13 @@ struct Manifold<V, D, P> {
     points: P,
 }
 
-impl<V: Vector + Serialize> Serialize for Contact<V>
-where
-    V::Scalar: Serialize,
-{
+impl<V: VectorData> Serialize for Contact<V> {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         Manifold { normal: self.normal, distance: self.distance, points: self.points() }.serialize(serializer)
     }
 }
 
-impl<'de, V: Vector + Deserialize<'de>> Deserialize<'de> for Contact<V>
-where
-    V::Scalar: Deserialize<'de>,
-{
+impl<'de, V: VectorData> Deserialize<'de> for Contact<V> {
     fn deserialize<D: Deserializer<'de>>(data: D) -> Result<Self, D::Error> {
         let read: Manifold<V, SignedDistance<V>, Vec<ContactPoint<V>>> = Manifold::deserialize(data)?;
         if !(1..=Self::MAX_POINTS).contains(&read.points.len()) {

@@ -231,16 +231,8 @@ pub struct Miss<V> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(serialize = "H: serde::Serialize, V: serde::Serialize, V::Scalar: serde::Serialize"))
-)]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(
-        deserialize = "H: serde::Deserialize<'de>, V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"
-    ))
-)]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "H: serde::Serialize, V: crate::data::VectorData")))]
+#[cfg_attr(feature = "serde", serde(bound(deserialize = "H: serde::Deserialize<'de>, V: crate::data::VectorData")))]
 pub struct Cast<H, V: Vector> {
     /// Hit, miss, or undecided. The axis of a miss of two bodies points from `b` to `a`; of a motion that turns it is
     /// the normal of the last separating plane.
@@ -315,11 +307,7 @@ pub struct RayHit<V: Vector> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct RayExit<V: Vector> {
     /// Where the ray leaves, with the outward normal there; a miss where no point of the ray is in the target; or
     /// undecided.

@@ -43,21 +43,13 @@ impl<V: Vector> Answer<'_, V, Margin<V>> {
     /// ```
     #[inline]
     pub fn gradient(&self) -> MotionGradient<V> {
-        if V::DIM == 2 {
-            gradient::<V, 2>(self, self.first(), self.second())
-        } else {
-            gradient::<V, 3>(self, self.first(), self.second())
-        }
+        in_dimension!(gradient::<V>(self, self.first(), self.second(), Mover::First))
     }
 
     /// The gradient with respect to the motion of the second ellipsoid.
     #[inline]
     pub fn gradient_of_second(&self) -> MotionGradient<V> {
-        if V::DIM == 2 {
-            gradient_of_second::<V, 2>(self, self.first(), self.second())
-        } else {
-            gradient_of_second::<V, 3>(self, self.first(), self.second())
-        }
+        in_dimension!(gradient::<V>(self, self.first(), self.second(), Mover::Second))
     }
 
     /// The second derivatives with respect to the motion of the first ellipsoid; the block of translations is positive
@@ -82,20 +74,12 @@ impl<V: Vector> Answer<'_, V, Margin<V>> {
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
     pub fn hessian(&self) -> MotionHessian<V> {
-        self.hessian_of(Mover::First)
+        in_dimension!(hessian::<V>(self, self.first(), self.second(), Mover::First))
     }
 
     /// The second derivatives with respect to the motion of the second ellipsoid.
     pub fn hessian_of_second(&self) -> MotionHessian<V> {
-        self.hessian_of(Mover::Second)
-    }
-
-    fn hessian_of(&self, mover: Mover) -> MotionHessian<V> {
-        if V::DIM == 2 {
-            hessian::<V, 2>(self, self.first(), self.second(), mover)
-        } else {
-            hessian::<V, 3>(self, self.first(), self.second(), mover)
-        }
+        in_dimension!(hessian::<V>(self, self.first(), self.second(), Mover::Second))
     }
 }
 
@@ -121,28 +105,19 @@ pub(super) fn beta_and_z<V: Vector, const N: usize>(
 }
 
 #[inline]
-fn gradient<V: Vector, const N: usize>(m: &Margin<V>, e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> MotionGradient<V> {
-    let (beta, z) = beta_and_z::<V, N>(m, e1, e2);
-    MotionGradient {
-        translation: store(z.map(|z| 2.0 * m.nu.as_f64() * z)),
-        rotation: torque(e1, beta, -2.0),
-        point: e1.center(),
-    }
-}
-
-#[inline]
-fn gradient_of_second<V: Vector, const N: usize>(
+fn gradient<V: Vector, const N: usize>(
     m: &Margin<V>,
     e1: &Ellipsoid<V>,
     e2: &Ellipsoid<V>,
+    mover: Mover,
 ) -> MotionGradient<V> {
-    let (_, z) = beta_and_z::<V, N>(m, e1, e2);
+    let (beta, z) = beta_and_z::<V, N>(m, e1, e2);
     let nu = m.nu.as_f64();
-    MotionGradient {
-        translation: store(z.map(|z| -2.0 * nu * z)),
-        rotation: torque(e2, load::<V, N>(m.ball_point), -2.0 * nu),
-        point: e2.center(),
-    }
+    let (body, sign, rotation) = match mover {
+        Mover::First => (e1, 2.0, torque(e1, beta, -2.0)),
+        Mover::Second => (e2, -2.0, torque(e2, load::<V, N>(m.ball_point), -2.0 * nu)),
+    };
+    MotionGradient { translation: store(z.map(|z| sign * nu * z)), rotation, point: body.center() }
 }
 
 fn hessian<V: Vector, const N: usize>(

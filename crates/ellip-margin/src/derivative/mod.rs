@@ -21,10 +21,8 @@
 //! axes: x ↦ x + δ, R ↦ exp([ω]×)R.
 
 mod contact;
-mod distance;
 mod margin;
 mod motion;
-mod scaling;
 mod shape;
 mod side;
 mod value_of_contact;

@@ -28,11 +28,7 @@ pub struct ShapeGradient<V: Vector> {
 impl<V: Vector> Answer<'_, V, Margin<V>> {
     /// The gradient with respect to the sizes of both.
     pub fn shape_gradient(&self) -> ShapeGradient<V> {
-        if V::DIM == 2 {
-            shape_gradient::<V, 2>(self, self.first(), self.second())
-        } else {
-            shape_gradient::<V, 3>(self, self.first(), self.second())
-        }
+        in_dimension!(shape_gradient::<V>(self, self.first(), self.second()))
     }
 }
 

@@ -80,7 +80,7 @@ pub struct Distance<V: Vector> {
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 pub fn distance_bracket<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginOptions) -> DistanceBracket<V> {
-    if V::DIM == 2 { bracket_in::<V, 2>(e1, e2, options) } else { bracket_in::<V, 3>(e1, e2, options) }
+    in_dimension!(bracket_in::<V>(e1, e2, options))
 }
 
 fn bracket_in<V: Vector, const N: usize>(
@@ -123,7 +123,7 @@ fn bracket_in<V: Vector, const N: usize>(
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 pub fn distance<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginOptions) -> Distance<V> {
-    if V::DIM == 2 { distance_in::<V, 2>(e1, e2, options) } else { distance_in::<V, 3>(e1, e2, options) }
+    in_dimension!(distance_in::<V>(e1, e2, options))
 }
 
 fn distance_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginOptions) -> Distance<V> {

@@ -164,20 +164,23 @@ impl<S: Scalar> Responses<S> {
     /// along a translation, which turns nothing, is `n′·v`.
     #[inline]
     fn hessian<V: Vector<Scalar = S>>(&self, coordinates: &Coordinates<S>, body: usize) -> Rows<S> {
-        let mut moved = self.moved(coordinates, body);
-        for (shift, velocity) in moved.shift.iter_mut().zip(&coordinates.velocity) {
-            // A turn about the centre moves the material point, and the point that is closest with it.
-            for i in V::DIM..MotionHessian::<V>::SIZE {
-                shift[i] += velocity[i];
-            }
-        }
-        let (q, sign) = (moved.along(coordinates), if body == 0 { S::ONE } else { -S::ONE });
-        let half = S::from_f64(0.5) * sign;
+        let MovedCoordinates { normal: [n, m], shift: [a, b] } = self.moved(coordinates, body);
+        let Coordinates { velocity: [v, w], turn: [t, u] } = coordinates;
+        let (half, sign) = (S::from_f64(0.5), if body == 0 { S::ONE } else { -S::ONE });
         let mut rows = [[S::ZERO; MAX]; MAX];
         for i in 0..MotionHessian::<V>::SIZE {
-            for j in 0..=i {
-                let entry = if j < V::DIM { q[i][j] * sign } else { S::ZERO + q[j][i] * half + q[i][j] * half };
-                (rows[i][j], rows[j][i]) = (entry, entry);
+            for j in 0..i.min(V::DIM - 1) + 1 {
+                rows[i][j] = (n[i] * v[j] + m[i] * w[j]) * sign;
+                rows[j][i] = rows[i][j];
+            }
+        }
+        for i in V::DIM..MotionHessian::<V>::SIZE {
+            // A turn about the centre moves the material point, and the point that is closest with it.
+            let (a, b) = (a[i] + v[i], b[i] + w[i]);
+            for j in V::DIM..MotionHessian::<V>::SIZE {
+                let along = (n[i] * v[j] + m[i] * w[j] - (a * t[j] + b * u[j])) * (half * sign);
+                rows[i][j] += along;
+                rows[j][i] += along;
             }
         }
         rows

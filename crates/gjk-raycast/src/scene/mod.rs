@@ -34,7 +34,8 @@ pub use self::result::{
 /// the body is removed. A half-space is no support map, since it has no end, but can be a body too
 /// ([`insert_half_space`](Self::insert_half_space)).
 ///
-/// Scenes answer ray casts, linear and motion casts, distances, contacts, and near or touching pairs.
+/// Scenes answer ray casts, linear and motion casts, distances, contacts, and near or touching pairs: of
+/// [`all`](Self::all) bodies, or [`among`](Self::among) some.
 ///
 /// # Answers
 /// Every answer is the one that results if the single query is asked of each body (or pair) in the order of their
