@@ -7,7 +7,7 @@ use num_traits::Float as _;
 use super::bracket::Bracket;
 use super::ray_frame::{Alpha, RayFrame, RayPoint, weights_of_zero};
 use crate::curvature::{between, is_stiff_across, share_of_second, turned};
-use crate::symmetric::{Across, Symmetric, dot};
+use crate::symmetric::{Across, Symmetric, cross, dot};
 
 /// A support point, the plane it was found on, and how it moves from there.
 #[derive(Clone, Copy, Default)]
@@ -195,9 +195,9 @@ impl<V: Vector> RayPieces<V> {
 /// Σ wᵢ·Pᵢ + W·δ = 0,   mᵢ(δ) alike where wᵢ > 0, and no lower elsewhere.
 /// ```
 ///
-/// One piece gives `δ = −H⁻¹P`. Of two, with `e = Pⱼ − Pᵢ`, the second condition to first order is `e·δ = τⱼ − τᵢ`, and
-/// the first one [across](between) `e` gives the rest. Where three are alike, so is the plane of their points, which
-/// needs no model.
+/// One piece gives `δ = −H⁻¹P`, or where `H` is singular, [`along_edge`]. Of two, with `e = Pⱼ − Pᵢ`, the second
+/// condition to first order is `e·δ = τⱼ − τᵢ`, and the first one [across](between) `e` gives the rest. Where three are
+/// alike, so is the plane of their points, which needs no model.
 ///
 /// The newest piece is the lowest where it was looked at, and mostly one of those. So those without it are tried only
 /// where none with it will do.
@@ -284,6 +284,8 @@ impl<S: Scalar> Models<S> {
         if t.hessian.is_regular() {
             let (x, y) = t.hessian.solve(t.p);
             self.offer((-x, -y), 1 << i);
+        } else if let Some(change) = along_edge(&self.turned[..self.len], i, self.noise * self.length, self.noise) {
+            self.offer(change, 1 << i);
         }
     }
 
@@ -305,4 +307,36 @@ impl<S: Scalar> Models<S> {
             }
         }
     }
+}
+
+/// Where the model of a piece with `H = κ·q·qᵀ` is greatest: an edge of the body, curved or straight, that the line
+/// runs through when `q·P` is zero.
+///
+/// Across the edge, `δ = −(q·P)/κ·q`. Along it the plane is free, between those that the other pieces are on; it is
+/// laid away from them, since on them it would be another piece that shows itself.
+fn along_edge<S: Scalar>(models: &[QuadraticModel<S>], edge: usize, least: S, noise: S) -> Option<Across<S>> {
+    let t = &models[edge];
+    let (curvature, q) = t.hessian.eigen_of_rank_one()?;
+    let (beside, along) = (dot(q, t.p), cross(q, t.p));
+    // Where the line is to be found along the edge rather than beside it, another piece is needed.
+    if !(along.abs() <= beside.abs().max(noise)) {
+        return None;
+    }
+    let step = -beside / curvature;
+    let change = (q.0 * step, q.1 * step);
+    let value = t.at(change);
+    let (mut from, mut to) = (-S::infinity(), S::infinity());
+    for (i, other) in models.iter().enumerate() {
+        let (spare, falls) = (other.at(change) - value, cross(q, other.p) - along);
+        if i == edge {
+            continue;
+        } else if falls > noise {
+            to = to.min(spare / falls);
+        } else if falls < -noise {
+            from = from.max(spare / falls);
+        }
+    }
+    let margin = (step.abs() + least).min((to - from) * S::from_f64(0.25));
+    let slide = S::ZERO.max(from + margin).min(to - margin);
+    Some((change.0 - q.1 * slide, change.1 + q.0 * slide))
 }

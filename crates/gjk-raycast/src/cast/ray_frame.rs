@@ -179,9 +179,15 @@ impl<V: Vector> RayFrame<V> {
     #[inline(always)]
     pub(super) fn see(&self, point: V, witness: PointPair<V>, n: V) -> RayPoint<V> {
         let swept = if self.radius > Scalar::ZERO { point + n * (self.radius / n.norm()) } else { point };
-        let aside = swept - self.foot;
-        let (u, v, t) = (aside.dot(self.e1), aside.dot(self.e2), swept.dot(self.d));
-        RayPoint { u, v, t, point, witness, alpha: None }
+        RayPoint { point, witness, ..self.seen(swept) }
+    }
+
+    /// A point of the body.
+    #[inline(always)]
+    pub(super) fn seen(&self, point: V) -> RayPoint<V> {
+        let aside = point - self.foot;
+        let (u, v, t) = (aside.dot(self.e1), aside.dot(self.e2), point.dot(self.d));
+        RayPoint { u, v, t, point, witness: PointPair::default(), alpha: None }
     }
 
     /// The support point of a plane.

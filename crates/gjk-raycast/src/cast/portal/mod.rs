@@ -64,10 +64,6 @@ impl<V: Vector> BestPlane<V> {
         Self { tau: -V::Scalar::infinity(), alpha: Alpha::ZERO, point: V::ZERO, end }
     }
 
-    fn is_known(&self) -> bool {
-        self.tau > -V::Scalar::infinity()
-    }
-
     #[inline(always)]
     fn set(&mut self, tau: V::Scalar, alpha: Alpha<V::Scalar>, p: &RayPoint<V>) {
         (self.tau, self.alpha, self.point) = (tau, alpha, p.point);

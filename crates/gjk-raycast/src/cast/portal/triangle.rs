@@ -42,11 +42,8 @@ pub(super) fn triangle<V: Vector>(
     if !(dot(p.across(), p.across()) > bracket.noise * bracket.noise) {
         // The line runs through the first one, which may be a corner.
         bracket.entry = EntryProof::InDoubt;
-        return if best.is_known() {
-            best.close(bracket, frame, &[p], &[Scalar::ONE], p.t)
-        } else {
-            Err(Stop::InDoubt)
-        };
+        p.alpha.ok_or(Stop::InDoubt)?;
+        return best.close(bracket, frame, &[p], &[Scalar::ONE], p.t);
     }
     let mut planes = Planes { frame, alpha: best.alpha, best, tilt };
     let mut q = planes.opposite(bracket, &p)?;
