@@ -18,11 +18,10 @@
 //! plane, and more hits would have none.
 
 use convex_support::{Scalar, Vector};
-use num_traits::Float as _;
 
-use super::bracket::{Bracket, EntryProof};
-use super::ray_frame::{RayFrame, RayPoint};
-use crate::symmetric::{Across, cross, dot};
+use super::bracket::Bracket;
+use super::line::Line;
+use crate::symmetric::{Across, axes_across, cross, dot};
 
 /// As many corners as a polygon has at most.
 const MAX_CORNERS: usize = 8;
@@ -39,82 +38,118 @@ const LATE: f64 = 32.0;
 #[inline(never)]
 pub(super) fn bound_entry<V: Vector>(bracket: &mut Bracket<'_, V>) {
     let (mu, error) = bracket.point_near_line();
-    let frame = RayFrame::new(bracket.line(), bracket.radius);
+    let view = View { line: bracket.line(), axes: axes_across(bracket.line().direction) };
     let late = mu + error * V::Scalar::from_f64(LATE);
-    let known = bracket.around.map(|points| around(&frame, points));
+    let known = bracket.around.map(|points| view.polygon(points));
     let is_near = |known: &Polygon<_>| known.latest_entry(mu, error).is_some_and(|latest| latest <= late);
-    let Some(polygon) = known.filter(is_near).or_else(|| look_around(bracket, &frame, error)) else { return };
+    let Some(polygon) = known.filter(is_near).or_else(|| view.look_around(bracket, error)) else { return };
     if let Some(latest) = polygon.latest_entry(mu, error) {
         bracket.enter_for_certain(latest);
     } else if polygon.touches_outline(error) {
-        bracket.entry = EntryProof::AtOutline;
+        bracket.touch_outline();
     }
 }
 
-/// The polygon of points of the body that are seen around the line, of which there are two in the plane.
-fn around<V: Vector>(frame: &RayFrame<V>, points: [V; 3]) -> Polygon<V> {
-    let [p, q, s] = points.map(|p| frame.seen(p));
-    if V::DIM == 2 {
-        return if p.u > q.u { Polygon::in_plane([p, q]) } else { Polygon::in_plane([q, p]) };
-    }
-    let turns_left = cross(p.edge_to(&q).0, p.edge_to(&s).0) > Scalar::ZERO;
-    let mut polygon = Polygon::new();
-    for corner in if turns_left { [p, q, s] } else { [q, p, s] } {
-        polygon.insert(polygon.len, corner);
-    }
-    polygon
+/// The line, and the axes across it.
+struct View<V: Vector> {
+    line: Line<V>,
+    axes: [V; 2],
 }
 
-/// A wide polygon of support points across the line, or one with a side that the outline is known to be near at; `None`
-/// where no more points can be had.
-fn look_around<V: Vector>(bracket: &mut Bracket<'_, V>, frame: &RayFrame<V>, error: V::Scalar) -> Option<Polygon<V>> {
-    let mut support = |toward: Across<V::Scalar>| frame.support(bracket, frame.vector(toward).unit()?).ok();
-    let one = V::Scalar::ONE;
-    let [right, left] = [support((one, Scalar::ZERO))?, support((-one, Scalar::ZERO))?];
-    if V::DIM == 2 {
-        return Some(Polygon::in_plane([right, left]));
+impl<V: Vector> View<V> {
+    /// The unit vector across the line.
+    fn across(&self, toward: Across<V::Scalar>) -> Option<V> {
+        (self.axes[0] * toward.0 + self.axes[1] * toward.1).unit()
     }
-    let mut polygon = Polygon::new();
-    polygon.insert(0, right);
-    polygon.insert(1, left);
-    while polygon.len < MAX_CORNERS {
-        if polygon.touches_outline(error) {
-            break;
-        }
-        let wide = V::Scalar::from_f64(WIDE);
-        let Some(i) = polygon.nearest_of(|side| !side.is_outermost && side.distance < wide) else { break };
-        let PolygonSide { distance, outward, .. } = polygon.sides[i];
-        let corner = support(outward)?;
-        // NaN is no farther.
-        if dot(corner.across(), outward) > distance + error {
-            polygon.insert(i + 1, corner);
-        } else {
-            polygon.sides[i].is_outermost = true;
-        }
+
+    fn see(&self, p: V) -> ProjectedCorner<V::Scalar> {
+        let p = p - self.line.foot;
+        ProjectedCorner { across: (p.dot(self.axes[0]), p.dot(self.axes[1])), along: p.dot(self.line.direction) }
     }
-    Some(polygon)
+
+    /// The polygon of points that are seen around the line, of which there are two in the plane.
+    fn polygon(&self, points: [V; 3]) -> Polygon<V::Scalar> {
+        let [p, q, s] = points.map(|p| self.see(p));
+        if V::DIM == 2 {
+            return if p.across.0 > q.across.0 { Polygon::in_plane([p, q]) } else { Polygon::in_plane([q, p]) };
+        }
+        let turns_left = cross(p.edge_to(&q), p.edge_to(&s)) > Scalar::ZERO;
+        let mut polygon = Polygon::new();
+        for corner in if turns_left { [p, q, s] } else { [q, p, s] } {
+            polygon.insert(polygon.len, corner);
+        }
+        polygon
+    }
+
+    /// A wide polygon of support points across the line, or one with a side that the outline is known to be near at;
+    /// `None` where no more points can be had.
+    fn look_around(&self, bracket: &mut Bracket<'_, V>, error: V::Scalar) -> Option<Polygon<V::Scalar>> {
+        let radius = bracket.radius;
+        let mut support = |toward: Across<V::Scalar>| {
+            let n = self.across(toward)?;
+            let (core, _) = bracket.support(n, n, &[]).ok()?;
+            Some(self.see(core + n * radius))
+        };
+        let one = V::Scalar::ONE;
+        let [right, left] = [support((one, Scalar::ZERO))?, support((-one, Scalar::ZERO))?];
+        if V::DIM == 2 {
+            return Some(Polygon::in_plane([right, left]));
+        }
+        let mut polygon = Polygon::new();
+        polygon.insert(0, right);
+        polygon.insert(1, left);
+        while polygon.len < MAX_CORNERS {
+            if polygon.touches_outline(error) {
+                break;
+            }
+            let wide = V::Scalar::from_f64(WIDE);
+            let Some(i) = polygon.nearest_of(|side| !side.is_outermost && side.distance < wide) else { break };
+            let PolygonSide { distance, outward, .. } = polygon.sides[i];
+            let corner = support(outward)?;
+            // NaN is no farther.
+            if dot(corner.across, outward) > distance + error {
+                polygon.insert(i + 1, corner);
+            } else {
+                polygon.sides[i].is_outermost = true;
+            }
+        }
+        Some(polygon)
+    }
+}
+
+/// A point of the body, across the line and along it.
+#[derive(Clone, Copy, Default)]
+struct ProjectedCorner<S> {
+    across: Across<S>,
+    along: S,
+}
+
+impl<S: Scalar> ProjectedCorner<S> {
+    fn edge_to(&self, to: &Self) -> Across<S> {
+        (to.across.0 - self.across.0, to.across.1 - self.across.1)
+    }
 }
 
 /// The side of a polygon from a corner to the next.
 #[derive(Clone, Copy, Default)]
-struct PolygonSide<V: Vector> {
-    corner: RayPoint<V>,
+struct PolygonSide<S> {
+    corner: ProjectedCorner<S>,
     /// The distance of zero from its line, negative where it is beyond.
-    distance: V::Scalar,
+    distance: S,
     /// The unit vector across it, away from the polygon.
-    outward: Across<V::Scalar>,
+    outward: Across<S>,
     /// Whether nothing of the body is beyond it, to an error.
     is_outermost: bool,
 }
 
-impl<V: Vector> PolygonSide<V> {
-    fn new(corner: RayPoint<V>, to: &RayPoint<V>) -> Self {
-        let ((du, dv), _) = corner.edge_to(to);
+impl<S: Scalar> PolygonSide<S> {
+    fn new(corner: ProjectedCorner<S>, to: &ProjectedCorner<S>) -> Self {
+        let (du, dv) = corner.edge_to(to);
         let per_length = (du * du + dv * dv).sqrt().recip();
         Self {
             corner,
             // Twice the area that zero spans with the side is its length times its distance.
-            distance: corner.cross(to) * per_length,
+            distance: cross(corner.across, to.across) * per_length,
             outward: (dv * per_length, -du * per_length),
             is_outermost: false,
         }
@@ -122,32 +157,32 @@ impl<V: Vector> PolygonSide<V> {
 }
 
 /// A polygon of points of the body as they are seen along the line, anticlockwise. That of two corners has two sides.
-struct Polygon<V: Vector> {
-    sides: [PolygonSide<V>; MAX_CORNERS],
+struct Polygon<S> {
+    sides: [PolygonSide<S>; MAX_CORNERS],
     len: usize,
 }
 
-impl<V: Vector> Polygon<V> {
+impl<S: Scalar> Polygon<S> {
     fn new() -> Self {
         Self { sides: [PolygonSide::default(); MAX_CORNERS], len: 0 }
     }
 
     /// In the plane, a point stands for a side across it, beyond which there is nothing.
-    fn in_plane([right, left]: [RayPoint<V>; 2]) -> Self {
+    fn in_plane([right, left]: [ProjectedCorner<S>; 2]) -> Self {
         let mut polygon = Self::new();
-        let one = V::Scalar::ONE;
-        for (corner, v) in [(right, -one), (right, one), (left, one), (left, -one)] {
-            polygon.insert(polygon.len, RayPoint { v, ..corner });
+        let one = S::ONE;
+        for (ProjectedCorner { across, along }, v) in [(right, -one), (right, one), (left, one), (left, -one)] {
+            polygon.insert(polygon.len, ProjectedCorner { across: (across.0, v), along });
         }
         polygon.sides.iter_mut().for_each(|side| side.is_outermost = true);
         polygon
     }
 
-    fn sides(&self) -> &[PolygonSide<V>] {
+    fn sides(&self) -> &[PolygonSide<S>] {
         &self.sides[..self.len]
     }
 
-    fn insert(&mut self, at: usize, corner: RayPoint<V>) {
+    fn insert(&mut self, at: usize, corner: ProjectedCorner<S>) {
         self.sides[at..=self.len].rotate_right(1);
         self.len += 1;
         self.sides[at].corner = corner;
@@ -158,23 +193,23 @@ impl<V: Vector> Polygon<V> {
     }
 
     /// Of some sides, the one that zero is the nearest to, or the farthest beyond.
-    fn nearest_of(&self, is_meant: impl Fn(&PolygonSide<V>) -> bool) -> Option<usize> {
+    fn nearest_of(&self, is_meant: impl Fn(&PolygonSide<S>) -> bool) -> Option<usize> {
         let meant = (0..self.len).filter(|&i| is_meant(&self.sides[i]));
         meant.reduce(|i, j| if self.sides[j].distance < self.sides[i].distance { j } else { i })
     }
 
     /// Whether the outline is known to be within two errors of the line.
-    fn touches_outline(&self, error: V::Scalar) -> bool {
+    fn touches_outline(&self, error: S) -> bool {
         self.sides().iter().any(|side| side.is_outermost && side.distance <= error + error)
     }
 
     /// Where the line is in the body, at the latest, that has a point at `mu` to within an error; `None` where the
     /// polygon is not around it by more than that.
-    fn latest_entry(&self, mu: V::Scalar, error: V::Scalar) -> Option<V::Scalar> {
+    fn latest_entry(&self, mu: S, error: S) -> Option<S> {
         let nearest = self.sides[self.nearest_of(|_| true)?];
         // NaN is no distance.
         let is_around = self.sides().iter().all(|side| side.distance > error + error);
-        let rise = self.sides().iter().fold(V::Scalar::ZERO, |rise, side| rise.max(side.corner.t - mu));
+        let rise = self.sides().iter().fold(S::ZERO, |rise, side| rise.max(side.corner.along - mu));
         is_around.then(|| mu + error + rise * (error / nearest.distance))
     }
 }

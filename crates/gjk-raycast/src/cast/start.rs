@@ -37,14 +37,10 @@ pub(crate) enum RayOf<'s, V: Vector> {
 #[inline(always)]
 pub(crate) fn settle_start<V: Vector>(cast: &mut Cast<V>, approach: Approach<'_, V>, options: &RayCastOptions<V>) {
     if (cast.is_open || cast.is_to_be_settled())
+        && cast.iterations < options.max_iterations
         && let Some(extra) = options.extra.get()
     {
-        if cast.iterations < options.max_iterations {
-            (extra.settle)(cast, approach, options);
-        } else if cast.upper == V::Scalar::infinity() {
-            // A second look might bound it.
-            cast.status = Status::IterationLimit;
-        }
+        (extra.settle)(cast, approach, options);
     }
 }
 
