@@ -30,6 +30,14 @@ pub(crate) trait TracedSupport {
 pub(crate) trait CastBody: TracedSupport {
     /// Where a line of the world [certainly enters](SupportMap::certain_crossing) the body.
     fn certain_crossing(&self, line: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>>;
+    /// What the first shape has of the [Hessian](TracedSupport::hessian).
+    fn hessian_of_first(
+        &self,
+        direction: Self::Vector,
+        changes: [Self::Vector; 2],
+    ) -> Symmetric<<Self::Vector as Vector>::Scalar> {
+        self.hessian(direction, changes)
+    }
     /// What a point of the core is made of, where a crossing is known.
     fn witness(&self, point: Self::Vector) -> PointPair<Self::Vector>;
     /// What the body is split into, in the world's unit. For a difference all is the sum, but for the origin, which is
@@ -426,6 +434,15 @@ impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
             }
             _ => None,
         }
+    }
+
+    fn hessian_of_first(
+        &self,
+        direction: T::Vector,
+        changes: [T::Vector; 2],
+    ) -> Symmetric<<T::Vector as Vector>::Scalar> {
+        let [a, b, d] = self.shapes.support_hessian(Of::A, direction, changes).map(|entry| entry * self.per_unit);
+        without_ball(Symmetric { a, b, d }, self.peeled[0], direction, changes)
     }
 
     #[inline(always)]

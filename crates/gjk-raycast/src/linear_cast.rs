@@ -163,30 +163,20 @@ compiled_once! {
         options: &LinearCastOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> LinearCast<V> {
-        searched(body, shapes, cores, motion, options, observer)
+        let [a, b] = shapes;
+        let (whole, wanted) = ray_of(motion, cores.map(|core| core.origin), options);
+        let CastRay { ray, direction_error, .. } = whole;
+        // Of no other pair is a crossing known.
+        if cores.iter().any(|core| matches!(core.kind, CoreKind::Point(_)))
+            && let Some(known) = certain_closely(body, ray, direction_error, &wanted, observer)
+        {
+            return answer(&Cast::of_certain(&known, body, ray), [a, b], cores, motion, options);
+        }
+        let mut cast = cast(body, whole, &wanted, observer);
+        let skin = options.target_distance.max(Scalar::ZERO);
+        settle_start(&mut cast, Approach { a, skin, b: RayOf::Shape(b), direction: ray.direction }, &wanted);
+        answer(&cast, [a, b], cores, motion, options)
     }
-}
-
-fn searched<V: Vector>(
-    body: &mut dyn CastBody<Vector = V>,
-    [a, b]: [Shape<'_, V>; 2],
-    cores: [Core<V>; 2],
-    motion: Motion<V>,
-    options: &LinearCastOptions<V>,
-    observer: &mut Observer<'_, V>,
-) -> LinearCast<V> {
-    let (whole, wanted) = ray_of(motion, cores.map(|core| core.origin), options);
-    let CastRay { ray, direction_error, .. } = whole;
-    // Of no other pair is a crossing known.
-    if cores.iter().any(|core| matches!(core.kind, CoreKind::Point(_)))
-        && let Some(known) = certain_closely(body, ray, direction_error, &wanted, observer)
-    {
-        return answer(&Cast::of_certain(&known, body, ray), [a, b], cores, motion, options);
-    }
-    let mut cast = cast(body, whole, &wanted, observer);
-    let skin = options.target_distance.max(Scalar::ZERO);
-    settle_start(&mut cast, Approach { a, skin, b: RayOf::Shape(b), direction: ray.direction }, &wanted);
-    answer(&cast, [a, b], cores, motion, options)
 }
 
 /// What a cast says of two shapes.

@@ -74,31 +74,27 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
 compiled_once! {
     /// Where the whole line of the ray leaves a body.
     fn exit_of_line<V>(body: &mut dyn CastBody<Vector = V>, ray: Ray<V>, options: &RayCastOptions<V>) -> RayExit<V> {
-        searched(body, ray, options)
-    }
-}
-
-fn searched<V: Vector>(body: &mut dyn CastBody<Vector = V>, ray: Ray<V>, &options: &RayCastOptions<V>) -> RayExit<V> {
-    let infinity = V::Scalar::infinity();
-    let wanted = RayCastOptions { min_lambda: Scalar::ZERO, max_lambda: infinity, ..options };
-    let Measures { origin, radius, extent, .. } = body.measures();
-    if !(extent + radius).is_finite() {
-        let (outcome, status) = (Outcome::Undecided, Status::Stalled);
-        return RayExit { outcome, lower: -infinity, upper: infinity, status, iterations: 0 };
-    }
-    let cast = cast(body, CastRay::of(ray, Part::Reversed), &wanted, &mut Observer::none());
-    let forward = LocalRay::new(ray, origin, cast.scale);
-    let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
-    let (lower, upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);
-    let answer =
-        RayExit { outcome: Outcome::Undecided, lower, upper, status: cast.status, iterations: cast.iterations };
-    match cast.outcome {
-        Outcome::Hit(CastHit { lambda, normal, .. }) => {
-            let lambda = reverse(lambda);
-            RayExit { outcome: Outcome::Hit(RayHit { lambda, point: ray.at(lambda), normal }), ..answer }
+        let infinity = V::Scalar::infinity();
+        let wanted = RayCastOptions { min_lambda: Scalar::ZERO, max_lambda: infinity, ..*options };
+        let Measures { origin, radius, extent, .. } = body.measures();
+        if !(extent + radius).is_finite() {
+            let (outcome, status) = (Outcome::Undecided, Status::Stalled);
+            return RayExit { outcome, lower: -infinity, upper: infinity, status, iterations: 0 };
         }
-        Outcome::Miss(miss) => RayExit { outcome: Outcome::Miss(miss), ..answer }.missed(),
-        Outcome::Undecided => answer,
+        let cast = cast(body, CastRay::of(ray, Part::Reversed), &wanted, &mut Observer::none());
+        let forward = LocalRay::new(ray, origin, cast.scale);
+        let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
+        let (lower, upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);
+        let answer =
+            RayExit { outcome: Outcome::Undecided, lower, upper, status: cast.status, iterations: cast.iterations };
+        match cast.outcome {
+            Outcome::Hit(CastHit { lambda, normal, .. }) => {
+                let lambda = reverse(lambda);
+                RayExit { outcome: Outcome::Hit(RayHit { lambda, point: ray.at(lambda), normal }), ..answer }
+            }
+            Outcome::Miss(miss) => RayExit { outcome: Outcome::Miss(miss), ..answer }.missed(),
+            Outcome::Undecided => answer,
+        }
     }
 }
 

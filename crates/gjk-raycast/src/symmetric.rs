@@ -49,6 +49,14 @@ impl<S: Scalar> Symmetric<S> {
         }
     }
 
+    /// The eigenvalue of a matrix of rank one, and its unit eigenvector.
+    pub(crate) fn eigen_of_rank_one(self) -> Option<(S, Across<S>)> {
+        let trace = self.a + self.d;
+        let column = if self.a > self.d { (self.a, self.b) } else { (self.b, self.d) };
+        let length = dot(column, column).sqrt();
+        (trace > S::ZERO && length > S::ZERO).then(|| (trace, (column.0 / length, column.1 / length)))
+    }
+
     /// The greatest eigenvalue of a matrix without negative ones, and its unit eigenvector; `None` where that is no
     /// number.
     pub(crate) fn greatest_eigen(self) -> Option<(S, Across<S>)> {

@@ -78,8 +78,7 @@ pub(super) struct Bracket<'a, V: Vector> {
     /// The unit of length.
     pub(super) scale: V::Scalar,
     observer: Observer<'a, V>,
-    /// The number of support points taken.
-    pub(super) iterations: usize,
+    iterations: usize,
     /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative
     /// where the line misses it, and the half, which is then zero.
     chord: (V::Scalar, V::Scalar),
@@ -89,7 +88,7 @@ pub(super) struct Bracket<'a, V: Vector> {
     normal: Option<V>,
     /// Where the ray is in the body, at the latest.
     high: Bound<V::Scalar>,
-    pub(super) entry: EntryProof,
+    entry: EntryProof,
     /// Where the line enters the hull of known points of the body.
     hull: V::Scalar,
     /// Three points of the body that are seen around the line, two in the plane, where a search found them.
@@ -98,7 +97,7 @@ pub(super) struct Bracket<'a, V: Vector> {
 
 /// How far the upper bound is to be trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum EntryProof {
+enum EntryProof {
     /// The ray is in the body there, whatever the errors.
     Certain,
     /// It is if the surface goes on as it was seen to, as far as an error reaches.
@@ -209,6 +208,16 @@ impl<'a, V: Vector> Bracket<'a, V> {
         spread == Scalar::ZERO || radius > (self.error + more) * spread * spread * V::Scalar::from_f64(DEEP)
     }
 
+    /// Takes note that an edge, or a graze, may be within an error of where the ray enters.
+    pub(super) fn doubt_entry(&mut self) {
+        self.entry = EntryProof::InDoubt;
+    }
+
+    /// Takes note that the outline of the body is within an error of the ray.
+    pub(super) fn touch_outline(&mut self) {
+        self.entry = EntryProof::AtOutline;
+    }
+
     /// Whether another look, at what is near the hit alone, may tell that the ray is in the body.
     pub(super) fn is_worth_another_look(&self) -> bool {
         self.is_entry_open() && self.entry != EntryProof::AtOutline
@@ -276,15 +285,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
         }
         let (point, witness) = self.body.support(n);
         self.iterations += 1;
-        if !self.observer.is_none() {
-            self.show(point, v, simplex);
-        }
-        if point.is_finite() { Ok((point, witness)) } else { Err(Stop::Exhausted(Status::Stalled)) }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn show(&mut self, point: V, v: V, simplex: &[V]) {
         let x = self.x();
         let mut seen = [V::ZERO; MAX_POINTS];
         let (low, high) = (self.low(), self.high.at);
@@ -296,6 +296,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
             let simplex = &seen[..simplex.len().min(MAX_POINTS)];
             Iterate { iteration: self.iterations - 1, simplex, v, w: x - point, scale: self.scale, lower, upper }
         });
+        if point.is_finite() { Ok((point, witness)) } else { Err(Stop::Exhausted(Status::Stalled)) }
     }
 
     /// How far rounding has moved a parameter of the line at most.
@@ -364,8 +365,20 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// radius from the line at `high`, and that is no farther behind the plane than was asked for.
     #[inline(always)]
     pub(super) fn close(&mut self, point: V, witness: PointPair<V>, high: V::Scalar) -> Result<RayContact<V>, Stop<V>> {
+        self.close_in(self.radius, point, witness, high)
+    }
+
+    /// The same for a ball within the body, of any radius about the point.
+    #[inline(always)]
+    pub(super) fn close_in(
+        &mut self,
+        radius: V::Scalar,
+        point: V,
+        witness: PointPair<V>,
+        high: V::Scalar,
+    ) -> Result<RayContact<V>, Stop<V>> {
         let aside = point - self.ray.line.at(high);
-        let within = self.radius + self.noise;
+        let within = radius + self.noise;
         let gap = (high - self.low()) * self.slope_or_one();
         let closed = gap <= self.tolerance() && gap >= -self.noise;
         if !(closed && aside.length_squared() <= within * within) {
@@ -423,7 +436,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         let mu = mu.max(self.low_or_at(mu));
         // What the line passes within an error it may as well miss.
         self.high = Bound { more: within, ..Bound::exact(mu.max(self.low())) };
-        self.entry = EntryProof::InDoubt;
+        self.doubt_entry();
         // Where the ray grazes what is round, the shortest vector is the normal, and the last plane is of elsewhere.
         // Without a radius it has no digits.
         let normal = if self.radius > self.noise { v.unit() } else { normal.or(self.normal) };
@@ -473,6 +486,21 @@ impl<'a, V: Vector> Bracket<'a, V> {
         RayContact { mu: at, normal: self.normal, witness }
     }
 
+    /// The contact where the last plane is crossed, if the core has a `point` on the line, made of `witness`, that is
+    /// no farther behind the plane than rounding.
+    pub(super) fn close_at_point(&mut self, point: V, witness: PointPair<V>) -> Option<RayContact<V>> {
+        let line = self.ray.line;
+        let aside = line.across(point - line.foot).length();
+        let mu = point.dot(line.direction);
+        let slope = self.slope_or_one();
+        let near = aside <= self.noise * V::Scalar::from_f64(0.5);
+        if !(near && (mu - self.low()) * slope <= self.noise + self.noise) {
+            return None;
+        }
+        self.high = Bound { at: mu.max(self.low()), spread: self.spread_or_one(), more: Scalar::ZERO };
+        Some(RayContact { mu: self.low_or_at(mu), normal: self.normal, witness })
+    }
+
     /// How much later the upper bound may be. The surface may be met less steeply than the plane, by what noise leaves
     /// open.
     fn delay(&self) -> V::Scalar {
@@ -516,6 +544,11 @@ impl<'a, V: Vector> Bracket<'a, V> {
         };
         let other = other.filter(|m| (m.dot(line.direction) > zero) == (slope < zero));
         other.and_then(|m| (n * m.dot(line.direction).abs() + m * slope.abs()).unit()).unwrap_or(n)
+    }
+
+    /// The number of support points taken.
+    pub(super) fn iterations(&self) -> usize {
+        self.iterations
     }
 }
 

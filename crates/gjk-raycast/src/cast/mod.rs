@@ -7,9 +7,7 @@ mod bracket;
 mod certain;
 mod line;
 mod outline;
-mod pieces;
 mod portal;
-mod ray_frame;
 mod start;
 
 use convex_support::{Scalar, Vector};
@@ -21,7 +19,7 @@ use crate::observer::Observer;
 use crate::simplex::Simplex;
 use crate::{CastMethod, Miss, Outcome, RayCastOptions, Status};
 use algorithm_3::{algorithm_3, touch_beside};
-use bracket::{Bracket, EntryProof};
+use bracket::Bracket;
 use certain::at_certain_entry;
 pub(crate) use certain::{certain, certain_closely, is_plain, show};
 pub(crate) use line::{CastRay, LocalRay, Part};
@@ -119,7 +117,7 @@ fn search<V: Vector, const ALL: bool>(bracket: &mut Bracket<'_, V>) -> Result<Ra
             found => return found,
         }
         match if V::DIM == 3 { portal(bracket) } else { Err(Stop::InDoubt) } {
-            Err(Stop::InDoubt) => {}
+            Err(Stop::InDoubt | Stop::Touches(_)) => {}
             found => return found,
         }
         if V::DIM == 3 && bracket.options.warm_start.is_some() {
@@ -127,7 +125,7 @@ fn search<V: Vector, const ALL: bool>(bracket: &mut Bracket<'_, V>) -> Result<Ra
         }
     }
     // In the plane this is the search. Elsewhere it is what is left where rounding decides.
-    bracket.entry = EntryProof::InDoubt;
+    bracket.doubt_entry();
     algorithm_3(bracket)
 }
 
@@ -150,6 +148,8 @@ pub(crate) enum Stop<V> {
     Exhausted(Status),
     /// This search cannot tell; another may.
     InDoubt,
+    /// Nor can it here, where the line touches the body, to rounding; moved by this vector it runs inside.
+    Touches(V),
 }
 
 /// What [`cast`] found; λ in units of the ray's direction.
@@ -204,9 +204,9 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
             (Outcome::Miss(Miss { axis: bracket.axis_of_miss(n) }), (infinity, infinity), Status::Converged)
         }
         Err(Stop::Exhausted(status)) => (Outcome::Undecided, bracket.bounds(None), status),
-        Err(Stop::InDoubt) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
+        Err(Stop::InDoubt | Stop::Touches(_)) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
     };
     let is_open = matches!(outcome, Outcome::Hit(_)) && bracket.is_worth_another_look();
-    let (iterations, scale) = (bracket.iterations, bracket.scale);
+    let (iterations, scale) = (bracket.iterations(), bracket.scale);
     Cast { outcome, lower, upper, status, iterations, scale, is_open }
 }

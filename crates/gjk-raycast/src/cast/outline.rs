@@ -19,7 +19,7 @@
 
 use convex_support::{Scalar, Vector};
 
-use super::bracket::{Bracket, EntryProof};
+use super::bracket::Bracket;
 use super::line::Line;
 use crate::symmetric::{Across, axes_across, cross, dot};
 
@@ -46,7 +46,7 @@ pub(super) fn bound_entry<V: Vector>(bracket: &mut Bracket<'_, V>) {
     if let Some(latest) = polygon.latest_entry(mu, error) {
         bracket.enter_for_certain(latest);
     } else if polygon.touches_outline(error) {
-        bracket.entry = EntryProof::AtOutline;
+        bracket.touch_outline();
     }
 }
 

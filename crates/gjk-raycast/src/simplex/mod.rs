@@ -14,7 +14,7 @@ use convex_support::{Scalar, Vector};
 
 use crate::body::PointPair;
 pub(crate) use affine_hull::{AffineHull, project};
-pub(crate) use closest::{Closest, nearest_face};
+pub(crate) use closest::{Closest, closest_in_face, nearest_face};
 pub(crate) use regions::{cross, nearest};
 pub use sub_algorithm::SubAlgorithm;
 
@@ -64,6 +64,14 @@ impl<V: Vector> Simplex<V> {
     /// Takes the newest point away.
     pub(crate) fn pop(&mut self) {
         self.len = self.len.saturating_sub(1);
+    }
+
+    /// Takes a point away; the others keep their order.
+    pub(crate) fn remove(&mut self, index: usize) {
+        self.points[index..self.len].rotate_left(1);
+        self.along[index..self.len].rotate_left(1);
+        self.witnesses[index..self.len].rotate_left(1);
+        self.pop();
     }
 
     /// Keeps only a face, with these weights of its corners.

@@ -3,14 +3,13 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::newton::{Recent, newton};
 use super::swept_simplex::{Entry, entry};
-use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
 use crate::cast::line::Line;
-use crate::cast::pieces::{RayPiece, RayPieces, best_plane};
-use crate::cast::ray_frame::{RayFrame, RayPoint};
 use crate::cast::{RayContact, Stop};
 use crate::simplex::Simplex;
+use crate::simplex::{MAX_POINTS, closest_in_face, faces};
 
 /// Exchanges of a point that gain nothing before the line is moved into the facet, and steps by curvature before the
 /// facet's own normal is taken.
@@ -28,11 +27,9 @@ pub(super) fn refine<V: Vector>(
     mut at: Entry<V>,
 ) -> Result<RayContact<V>, Stop<V>> {
     let mut pierced = Pierced { line: bracket.line(), moved: Scalar::ZERO, failures: 0 };
+    let mut steps = CurvatureSteps::new(bracket.noise);
+    let mut recent = Recent::new();
     simplex.retain(at.face, at.weights);
-    let mut steps = CurvatureSteps::new(bracket);
-    for (&point, &n) in simplex.points().iter().zip(simplex.along()) {
-        steps.see(bracket, point, n);
-    }
     loop {
         let slope = -at.n.dot(bracket.line().direction);
         bracket.enter_hull(at.mu, pierced.moved, slope);
@@ -41,7 +38,8 @@ pub(super) fn refine<V: Vector>(
         {
             bracket.around = Some([p, q, q]);
         }
-        let turned = steps.next(bracket);
+        let turned = if steps.may_turn() { newton(bracket, simplex, &recent, steps.model_error) } else { None };
+        let turned = steps.accept(turned);
         let n = turned.unwrap_or(at.n);
         let (point, witness) = bracket.support(n, n, simplex.points())?;
         bracket.advance(n, point)?;
@@ -49,15 +47,21 @@ pub(super) fn refine<V: Vector>(
         if let Some(contact) = bracket.close_to_hull(slope, wanted, || simplex.weighted_witness()) {
             return Ok(contact);
         }
-        steps.judge(bracket.gap_to_hull(slope), turned.is_some());
-        steps.see(bracket, point, n);
+        steps.judge(bracket.gap_to_hull(slope), turned.is_some(), bracket.noise);
+        recent.push(point + n * bracket.radius, n, witness);
+        if let Some(contact) = touch(bracket, recent.simplex()) {
+            return Ok(contact);
+        }
         if simplex.points().contains(&point) {
             if turned.is_some() {
                 continue;
             }
-            // Nothing is before the facet; what points and planes are wrong by may be all that is left.
-            let contact = bracket.close_to_hull(slope, wanted + bracket.error, || simplex.weighted_witness());
-            return contact.ok_or(Stop::InDoubt);
+            // Nothing is before the facet. One that is seen as a sliver is entered at a spot that is mostly rounding,
+            // while the ray runs through an edge or a corner of it; and what points and planes are wrong by may be all
+            // that is left.
+            let contact = if bracket.radius == Scalar::ZERO { touch(bracket, simplex) } else { None };
+            let all_there_is = || bracket.close_to_hull(slope, wanted + bracket.error, || simplex.weighted_witness());
+            return contact.or_else(all_there_is).ok_or(Stop::InDoubt);
         }
         let before = *simplex;
         simplex.push(point, n, witness);
@@ -120,47 +124,62 @@ impl<V: Vector> Pierced<V> {
     }
 }
 
-/// Steps to where the pieces of a curved body are expected to be crossed last, as long as they halve the bracket; after
-/// some that did not, the facet's normal is taken. In the plane, where this algorithm is the search, they save a third
-/// of the support points.
-struct CurvatureSteps<V: Vector> {
-    frame: RayFrame<V>,
-    pieces: RayPieces<V>,
-    last_gap: V::Scalar,
+/// Whether steps by curvature are taken: while they shrink, and the facet's normal after one that did not; between two
+/// pieces, every other step only goes back and forth.
+struct CurvatureSteps<S> {
+    last_gap: S,
     failures: usize,
-    /// How much of its error is added to the model of an older piece.
-    error_weight: V::Scalar,
+    /// The tangents of the angles of the last two steps.
+    angles: [S; 2],
+    /// How much farther one of two pieces is made to reach than the other, so that it is the one found next.
+    model_error: S,
 }
 
-impl<V: Vector> CurvatureSteps<V> {
-    fn new(bracket: &Bracket<'_, V>) -> Self {
-        let frame = RayFrame::new(bracket.line(), bracket.radius);
-        let (last_gap, error_weight) = (V::Scalar::infinity(), Scalar::ONE);
-        Self { frame, pieces: RayPieces::new(), last_gap, failures: 0, error_weight }
+impl<S: Scalar> CurvatureSteps<S> {
+    fn new(noise: S) -> Self {
+        Self { last_gap: S::infinity(), failures: 0, angles: [S::infinity(); 2], model_error: noise }
     }
 
-    /// Takes note of a support point of the core.
-    fn see(&mut self, bracket: &Bracket<'_, V>, point: V, n: V) {
-        if !bracket.body.is_curved() {
-            return;
-        }
-        if let alpha @ Some(at) = self.frame.alpha(n).filter(|alpha| alpha.length_squared().is_finite()) {
-            let p = RayPoint { alpha, ..self.frame.see(point, PointPair::default(), n) };
-            self.pieces.push(RayPiece::new(bracket, &self.frame, p, at), bracket.noise);
-        }
+    fn may_turn(&self) -> bool {
+        self.failures <= MAX_FAILURES
     }
 
-    /// The unit normal of the next plane; `None` where that is to be the facet's.
-    fn next(&self, bracket: &Bracket<'_, V>) -> Option<V> {
-        let newest = self.pieces.all().last().filter(|_| self.failures <= MAX_FAILURES)?;
-        let (to, _) = best_plane(self.pieces.all(), newest.alpha, bracket.noise, self.error_weight)?;
-        self.frame.normal(to.plane()).unit()
+    /// Takes a step, given by the normal and the tangent of the angle to it, if the angle shrinks.
+    fn accept<V>(&mut self, turned: Option<(V, S)>) -> Option<V> {
+        let shrunk = self.angles[0].max(self.angles[1]) * S::from_f64(0.5);
+        let turned = turned.filter(|&(_, angle)| angle <= shrunk || self.failures > 0);
+        self.angles = turned.as_ref().map_or([S::infinity(); 2], |&(_, angle)| [angle, self.angles[0]]);
+        turned.map(|(n, _)| n)
     }
 
-    fn judge(&mut self, gap: V::Scalar, turned: bool) {
-        let halved = gap <= self.last_gap * Scalar::from_f64(0.5);
-        self.failures = if halved { 0 } else { self.failures + usize::from(turned) };
-        self.error_weight = if self.failures == 0 { Scalar::ONE } else { self.error_weight * Scalar::from_f64(8.0) };
+    fn judge(&mut self, gap: S, turned: bool, noise: S) {
+        let halved = gap <= self.last_gap * S::from_f64(0.5);
+        self.failures = if halved || !turned { 0 } else { self.failures + 1 };
+        self.model_error = if self.failures == 0 { noise } else { self.model_error * S::from_f64(16.0) };
         self.last_gap = gap;
     }
+}
+
+/// The contact where the ray runs through one of some points of the body, or through a segment or triangle of them, if
+/// that also is where it crosses the last plane.
+fn touch<V: Vector>(bracket: &mut Bracket<'_, V>, points: &Simplex<V>) -> Option<RayContact<V>> {
+    let line = bracket.line();
+    let mut seen = [V::ZERO; MAX_POINTS];
+    for (s, &point) in seen.iter_mut().zip(points.points()) {
+        *s = line.across(point - line.foot);
+    }
+    let seen = &seen[..points.points().len()];
+    // Points first and triangles last, since the coordinates in a sliver are nothing but rounding.
+    for corners in 1..=V::DIM {
+        for face in faces(seen.len(), corners).filter(|face| face.len() == corners) {
+            let Some(nearest) = closest_in_face(seen, face, V::DIM - 1) else { continue };
+            let mut touching = *points;
+            touching.retain(face, nearest.weights);
+            // Measured again, for the same reason.
+            if let Some(contact) = bracket.close_at_point(touching.weighted_point(), touching.weighted_witness()) {
+                return Some(contact);
+            }
+        }
+    }
+    None
 }

@@ -5,7 +5,7 @@
 //! v)` along `α`.
 //!
 //! Where pieces meet, such as the rims of a cylinder along its side, each is a quadratic model of its own
-//! (`cast/pieces.rs`), and the next plane is where the least of the models is greatest (`best_plane`): a step of
+//! (`pieces.rs`), and the next plane is where the least of the models is greatest (`best_plane.rs`): a step of
 //! sequential quadratic programming (Nocedal and Wright, *Numerical Optimization*, ch. 18), which for three pieces is
 //! the portal's own plane. Between two, both have to be looked at in turn, though only the one that reaches farther
 //! shows itself; so the plane is laid by a little more than the error of the older model on its side.
@@ -14,12 +14,13 @@ use convex_support::numerics::elementary::power_of_two;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::{BestPlane, Portal};
+use super::best_plane::best_plane;
+use super::closing::{BestPlane, OnLine};
+use super::pieces::{RayPiece, RayPieces};
+use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint, weights_of_zero};
 use crate::cast::bracket::Bracket;
-use crate::cast::pieces::{OnLine, RayPiece, RayPieces, best_plane};
-use crate::cast::ray_frame::{Alpha, RayFrame, RayPoint};
 use crate::cast::{RayContact, Stop};
-use crate::symmetric::Across;
+use crate::symmetric::{Across, Symmetric};
 
 /// Support points of the search.
 const MAX_STEPS: usize = 40;
@@ -32,27 +33,24 @@ const MAX_FAILURES: i32 = 3;
 const FAR: f64 = 8.0;
 
 /// Brings a portal nearer, by planes that the curvature of the body suggests as long as they close the bracket fast,
-/// and by the portal's own. Or where none is known, searches by curvature alone. The
-/// points were found by planes that were tilted from one another by so much.
-#[inline(never)]
+/// and by the portal's own. The points were found by planes that were tilted from one another by so much.
 pub(super) fn sqp<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
-    points: &[RayPoint<V>],
-    mut portal: Option<Portal<V>>,
+    mut portal: Portal<V>,
     mut best: BestPlane<V>,
     tilt: V::Scalar,
 ) -> Result<RayContact<V>, Stop<V>> {
-    let mut alpha = portal.as_ref().map_or(best.alpha, Portal::alpha);
+    let mut alpha = if portal.high.is_finite() { portal.alpha() } else { best.alpha };
     let mut pieces = RayPieces::new();
-    for &p in points {
-        pieces.push(RayPiece::new(bracket, frame, p, alpha), bracket.noise);
+    for p in &portal.corners {
+        pieces.push(piece(bracket, frame, *p, alpha), bracket.noise);
     }
     // What the last frame tells is near enough for models, and too near for the plane through the points.
     if tilt < Scalar::ONE
         && let Some(newest) = pieces.all().last()
     {
-        let is_enclosed = portal.is_some();
+        let is_enclosed = portal.high.is_finite();
         let far = tilt * V::Scalar::from_f64(FAR) * newest.alpha.length();
         let is_near = |(x, y): Across<_>| x * x + y * y <= far * far;
         match best_plane(pieces.all(), newest.alpha, bracket.noise, Scalar::ONE) {
@@ -62,41 +60,88 @@ pub(super) fn sqp<V: Vector>(
         }
     }
     let start = bracket.low();
-    let mut own = portal.as_ref().map(Portal::on_line);
     let mut steps = Steps { gap: V::Scalar::infinity(), failures: 0, error_weight: V::Scalar::ONE };
+    let mut coarse = None;
     for _ in 0..MAX_STEPS {
-        let p = frame.support_of(bracket, alpha.plane())?;
-        best.improve(bracket, frame, alpha, &p, Scalar::ZERO)?;
-        steps.weigh_error(pieces.push(RayPiece::new(bracket, frame, p, alpha), bracket.noise));
-        let floor = best.tau - bracket.noise * best.alpha.length();
-        let next = match portal {
-            Some(mut portal) => portal.exchange(p).ok().map(|()| portal),
-            None => Portal::around([points[0], points[1], p]),
+        let p = match frame.support_of(bracket, alpha.plane()) {
+            Ok(p) => p,
+            Err(_) if coarse.is_some() => break,
+            Err(stop) => return Err(stop),
         };
-        let is_nearer = |at: &OnLine<V>| at.high >= floor && own.is_none_or(|own| at.high < own.high);
-        if let Some(nearer) = next.as_ref().map(Portal::on_line).filter(is_nearer) {
-            (portal, own) = (next, Some(nearer));
-        }
-        if own.is_some_and(|own| own.high < floor) {
+        best.improve(bracket, frame, alpha, &p, Scalar::ZERO)?;
+        let same = pieces.push(piece(bracket, frame, p, alpha), bracket.noise);
+        steps.weigh_error(same);
+        let floor = best.tau - bracket.noise * best.alpha.length();
+        portal.exchange(&p, floor);
+        if portal.high < floor {
             // Nothing of the body is before the plane: zero was in the triangle by rounding alone.
-            (portal, own) = (None, None);
-        } else if own.is_some_and(|own| own.high < start) {
+            portal.high = V::Scalar::infinity();
+        } else if portal.high < start {
             break;
         }
-        let within = bracket.tolerance() * best.alpha.length();
-        // A segment first, since the weights in a flat triangle may be nothing but rounding.
-        let passed = pieces.passed(bracket.noise).filter(|below| below.high >= start);
-        for below in passed.iter().chain(&own) {
-            if below.high - best.tau <= within {
-                match best.close(bracket, frame, &below.corners, &below.weights, below.high) {
-                    Err(Stop::InDoubt) => {}
-                    found => return found,
-                }
-            }
+        match close(bracket, frame, &best, &pieces, &portal, start, &mut coarse) {
+            Err(Stop::InDoubt) => {}
+            found => return found,
         }
-        let plane = own.zip(portal.as_ref()).map(|(own, portal)| (portal.alpha(), own.high));
-        let Some(to) = steps.next(bracket, &pieces, plane, &best, alpha) else { break };
+        let Some(to) = steps.next(bracket, &pieces, &portal, &best, alpha) else { break };
         alpha = to;
+    }
+    match coarse {
+        Some(below) => best.close_at(bracket, frame, &below),
+        None => Err(Stop::InDoubt),
+    }
+}
+
+/// A point's piece at the plane it was found on. A point found on a plane along the ray counts for itself alone.
+#[inline(always)]
+fn piece<V: Vector>(
+    bracket: &Bracket<'_, V>,
+    frame: &RayFrame<V>,
+    p: RayPoint<V>,
+    alpha: Alpha<V::Scalar>,
+) -> RayPiece<V> {
+    match p.alpha {
+        Some(alpha) => RayPiece { p, alpha, hessian: frame.hessian(bracket.body, frame.normal(alpha.plane())) },
+        None => RayPiece { p, alpha, hessian: Symmetric::ZERO },
+    }
+}
+
+/// Closes the bracket by pieces that the line passes or a portal that it runs through.
+///
+/// At a small slope, what closes the bracket to rounding of the planes is long along the ray, and there one more plane
+/// mostly shortens it by all of the rest: `λ` is where the last plane is crossed. Meanwhile `coarse` is what closes it.
+#[inline(always)]
+fn close<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    frame: &RayFrame<V>,
+    best: &BestPlane<V>,
+    pieces: &RayPieces<V>,
+    portal: &Portal<V>,
+    start: V::Scalar,
+    coarse: &mut Option<OnLine<V>>,
+) -> Result<RayContact<V>, Stop<V>> {
+    let within = bracket.tolerance() * best.alpha.length();
+    let fine = (bracket.noise + bracket.noise).max(bracket.tolerance());
+    // A segment first, since the weights in a flat triangle may be nothing but rounding.
+    let passed = pieces.passed(bracket.noise).filter(|below| below.high >= start);
+    let enclosing = (portal.high - best.tau <= within).then(|| OnLine::from(*portal));
+    let mut wide = None;
+    for below in [&passed, &enclosing, &*coarse].into_iter().flatten() {
+        let gap = below.high - best.tau;
+        if !(gap <= within) {
+            continue;
+        }
+        if coarse.is_none() && gap > fine {
+            wide = wide.or(Some(*below));
+            continue;
+        }
+        match best.close_at(bracket, frame, below) {
+            Err(Stop::InDoubt) => {}
+            found => return found,
+        }
+    }
+    if coarse.is_none() {
+        *coarse = wide;
     }
     Err(Stop::InDoubt)
 }
@@ -119,25 +164,85 @@ impl<S: Scalar> Steps<S> {
             if same_piece { self.error_weight * S::from_f64(8.0) } else { power_of_two(-self.failures) };
     }
 
-    /// The next plane, if there is one, given the portal's own and where the line runs through that.
+    /// The next plane, if there is one.
     #[inline(always)]
     fn next<V: Vector<Scalar = S>>(
         &mut self,
         bracket: &Bracket<'_, V>,
         pieces: &RayPieces<V>,
-        own: Option<(Alpha<S>, S)>,
+        portal: &Portal<V>,
         best: &BestPlane<V>,
         alpha: Alpha<S>,
     ) -> Option<Alpha<S>> {
-        let gives_up = self.failures >= MAX_FAILURES && own.is_some();
-        let suggested = if gives_up { None } else { best_plane(pieces.all(), alpha, bracket.noise, self.error_weight) };
-        let high = own.map_or(S::infinity(), |(_, high)| high);
-        let gap = suggested.map_or(high, |(_, value)| value.min(high)) - best.tau;
+        let suggested = if self.failures < MAX_FAILURES || portal.high.is_infinite() {
+            best_plane(pieces.all(), alpha, bracket.noise, self.error_weight)
+        } else {
+            None
+        };
+        let gap = suggested.map_or(portal.high, |(_, value)| value.min(portal.high)) - best.tau;
         let halved = gap <= self.gap * S::from_f64(0.5);
-        self.failures = if halved || gives_up { 0 } else { self.failures + 1 };
+        let restarts = self.failures >= MAX_FAILURES && portal.high.is_finite();
+        self.failures = if halved || restarts { 0 } else { self.failures + 1 };
         self.gap = gap;
-        let (to, _) = suggested.or(own)?;
+        let to = match suggested {
+            Some((to, _)) => to,
+            None if portal.high.is_finite() => portal.alpha(),
+            None => return None,
+        };
         // What is looked at twice tells nothing new.
         (to != alpha).then_some(to)
+    }
+}
+
+/// Three points of the body, in anticlockwise order, whose triangle the line runs through; or where none is known, any,
+/// and `high` infinite.
+#[derive(Clone, Copy)]
+pub(super) struct Portal<V: Vector> {
+    pub(super) corners: [RayPoint<V>; 3],
+    /// The weights of the point where the line runs through, with sum 1.
+    pub(super) weights: [V::Scalar; 3],
+    /// Where the line runs through.
+    pub(super) high: V::Scalar,
+}
+
+impl<V: Vector> Portal<V> {
+    /// No portal, but points of the body.
+    pub(super) fn unknown(corners: [RayPoint<V>; 3]) -> Self {
+        Self { corners, weights: [V::Scalar::ZERO; 3], high: V::Scalar::infinity() }
+    }
+
+    /// Its plane.
+    fn alpha(&self) -> Alpha<V::Scalar> {
+        let [p, q, s] = &self.corners;
+        RayPlane::through([p, q, s]).alpha()
+    }
+
+    /// Puts a point in the place of one corner, if the line still runs through, and earlier; but no earlier than
+    /// `floor`, before which nothing of the body is: a triangle that is as flat as rounding may not contain zero.
+    fn exchange(&mut self, r: &RayPoint<V>, floor: V::Scalar) {
+        let zero = V::Scalar::ZERO;
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let (p, q) = (&self.corners[j], &self.corners[k]);
+            let weights = weights_of_zero([r.across(), p.across(), q.across()]);
+            let sum = weights[0] + weights[1] + weights[2];
+            // Where no portal is known yet, the corners that are kept may be on the wrong side.
+            if weights.iter().all(|&weight| weight >= zero) && sum > zero {
+                let inverse = sum.recip();
+                let high = (weights[0] * r.t + weights[1] * p.t + weights[2] * q.t) * inverse;
+                if high < self.high && high >= floor {
+                    (self.corners[i], self.high) = (*r, high);
+                    (self.weights[i], self.weights[j]) = (weights[0] * inverse, weights[1] * inverse);
+                    self.weights[k] = weights[2] * inverse;
+                }
+                return;
+            }
+        }
+    }
+}
+
+impl<V: Vector> From<Portal<V>> for OnLine<V> {
+    fn from(portal: Portal<V>) -> Self {
+        Self { corners: portal.corners, weights: portal.weights, len: 3, high: portal.high }
     }
 }

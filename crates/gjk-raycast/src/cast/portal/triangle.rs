@@ -12,12 +12,15 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::sqp::sqp;
-use super::{BestPlane, OF_FACE, Portal};
-use crate::cast::bracket::{Bracket, EntryProof};
-use crate::cast::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
+use super::OF_FACE;
+use super::closing::BestPlane;
+use super::pieces::is_surrounded;
+use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
+use super::sqp::{Portal, sqp};
+use crate::body::PointPair;
+use crate::cast::bracket::Bracket;
 use crate::cast::{RayContact, Stop};
-use crate::symmetric::{Across, dot};
+use crate::symmetric::dot;
 
 /// Support points until the portal has to be found; half as many where curvature may tell more.
 const MAX_OUTSIDE: usize = 16;
@@ -28,20 +31,25 @@ const NEAR: f64 = 0.01;
 /// Exchanges of a point that bring the portal no nearer.
 pub(super) const MAX_EXCHANGES: usize = 12;
 
-/// Closes the bracket, beginning with a plane across `first`, and with planes tilted by `tilt` until a portal is found.
+/// Closes the bracket, beginning with a plane across `first`, which may be known to support the body at `seen`, and with
+/// planes tilted by `tilt` until a portal is found.
 #[inline(always)]
 pub(super) fn triangle<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
     first: V,
+    seen: Option<RayPoint<V>>,
     tilt: V::Scalar,
 ) -> Result<RayContact<V>, Stop<V>> {
-    let mut p = frame.support(bracket, first)?;
+    let mut p = match seen {
+        Some(p) => p,
+        None => frame.support(bracket, first)?,
+    };
     let mut best = BestPlane::none(bracket.end());
     best.begin(bracket, frame, first, &mut p, Scalar::ZERO)?;
     if !(dot(p.across(), p.across()) > bracket.noise * bracket.noise) {
         // The line runs through the first one, which may be a corner.
-        bracket.entry = EntryProof::InDoubt;
+        bracket.doubt_entry();
         return if best.is_known() {
             best.close(bracket, frame, &[p], &[Scalar::ONE], p.t)
         } else {
@@ -50,15 +58,27 @@ pub(super) fn triangle<V: Vector>(
     }
     let mut planes = Planes { frame, alpha: best.alpha, best, tilt };
     let mut q = planes.opposite(bracket, &p)?;
-    // Pieces known from so near tell where to look next before the line is enclosed.
-    if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.body.is_curved() {
-        match sqp(bracket, frame, &[p, q], None, planes.best, tilt) {
-            Err(Stop::InDoubt) => {}
-            found => return found,
+    if tilt < Scalar::ONE {
+        if let Some(found) = mixed(frame, &p, &q) {
+            return planes.shrink(bracket, found);
+        }
+        // Pieces known from so near tell where to look next before the line is enclosed.
+        if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.body.is_curved() {
+            match sqp(bracket, frame, Portal::unknown([p, p, q]), planes.best, tilt) {
+                Err(Stop::InDoubt) => {}
+                found => return found,
+            }
         }
     }
-    let portal = planes.enclose(bracket, &mut p, &mut q)?;
-    planes.shrink(bracket, portal)
+    match planes.enclose(bracket, &mut p, &mut q)? {
+        Some(found) => planes.shrink(bracket, found),
+        // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a
+        // smooth piece may be found that it runs through.
+        None if planes.best.is_known() && frame.is_curved(bracket.body, frame.normal(planes.best.alpha.plane())) => {
+            sqp(bracket, frame, Portal::unknown([p, q, q]), planes.best, tilt)
+        }
+        None => Err(Stop::InDoubt),
+    }
 }
 
 /// The planes of the search: the last, the best, and how far the next one is tilted towards the line.
@@ -67,6 +87,15 @@ struct Planes<'f, V: Vector> {
     alpha: Alpha<V::Scalar>,
     best: BestPlane<V>,
     tilt: V::Scalar,
+}
+
+/// Three points of the body whose triangle contains zero as seen along the ray.
+struct Triangle<V: Vector> {
+    corners: [RayPoint<V>; 3],
+    /// Zero's weights, up to their sum.
+    weights: [V::Scalar; 3],
+    /// Whether the corners go round anticlockwise, 1, or clockwise, −1: cheaper to keep than to put them in order.
+    turn: V::Scalar,
 }
 
 impl<V: Vector> Planes<'_, V> {
@@ -88,32 +117,18 @@ impl<V: Vector> Planes<'_, V> {
         plane: RayPlane<V::Scalar>,
         toward: (V::Scalar, V::Scalar),
     ) -> Result<RayPoint<V>, Stop<V>> {
-        let p = self.support(bracket, plane)?;
-        if dot(toward, p.across()) > Scalar::ZERO { Ok(p) } else { self.support_farther(bracket, toward) }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn support_farther(
-        &mut self,
-        bracket: &mut Bracket<'_, V>,
-        toward: Across<V::Scalar>,
-    ) -> Result<RayPoint<V>, Stop<V>> {
-        let number = V::Scalar::from_f64;
-        while self.tilt < Scalar::ONE {
+        let is_beyond = |p: &RayPoint<V>| dot(toward, p.across()) > V::Scalar::ZERO;
+        let mut p = self.support(bracket, plane)?;
+        while !is_beyond(&p) && self.tilt < Scalar::ONE {
+            let number = V::Scalar::from_f64;
             self.tilt = (self.tilt * number(8.0)).max(number(OF_FACE));
-            let p = self.support(bracket, self.alpha.tilted(toward, self.tilt).plane())?;
-            if dot(toward, p.across()) > Scalar::ZERO {
-                return Ok(p);
-            }
+            p = self.support(bracket, self.alpha.tilted(toward, self.tilt).plane())?;
         }
-        // In the end the plane along the line does not separate and has its point beyond.
+        if is_beyond(&p) {
+            return Ok(p);
+        }
         self.tilt = self.tilt.max(Scalar::ONE);
-        let across = self.frame.vector(toward).unit().ok_or(Stop::InDoubt)?;
-        let p = self.frame.support(bracket, across)?;
-        bracket.advance(across, p.point)?;
-        let is_beyond = (p.point - bracket.line().foot).dot(across) + bracket.radius > Scalar::ZERO;
-        if is_beyond { Ok(p) } else { Err(Stop::InDoubt) }
+        support_across(bracket, self.frame, toward)
     }
 
     /// A second point on the other side of the line, of a plane that is tilted towards it.
@@ -127,14 +142,14 @@ impl<V: Vector> Planes<'_, V> {
         self.support_toward(bracket, plane, toward)
     }
 
-    /// A third point such that the triangle contains zero.
+    /// A third point such that the triangle contains zero. `None` where there are too many that do not.
     #[inline(always)]
     fn enclose(
         &mut self,
         bracket: &mut Bracket<'_, V>,
         p: &mut RayPoint<V>,
         q: &mut RayPoint<V>,
-    ) -> Result<Portal<V>, Stop<V>> {
+    ) -> Result<Option<Triangle<V>>, Stop<V>> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let most = if bracket.body.is_curved() { MAX_OUTSIDE / 2 } else { MAX_OUTSIDE };
         for _ in 0..most {
@@ -151,28 +166,30 @@ impl<V: Vector> Planes<'_, V> {
             let s = self.support_toward(bracket, plane, toward)?;
             let weights = [q.cross(&s) * turn, s.cross(p) * turn, area.abs()];
             if weights[0] >= zero && weights[1] >= zero {
-                return Ok(Portal { corners: [*p, *q, s], weights, turn });
+                return Ok(Some(Triangle { corners: [*p, *q, s], weights, turn }));
             }
             *(if weights[0] < weights[1] { &mut *p } else { &mut *q }) = s;
         }
-        // The line passes near where the body is seen to end, too near to be enclosed by points.
-        Err(Stop::InDoubt)
+        Ok(None)
     }
 
     /// Brings the portal nearer until the bracket closes between the best plane, at its own cosine, and the portal.
     #[inline(always)]
-    fn shrink(&mut self, bracket: &mut Bracket<'_, V>, mut portal: Portal<V>) -> Result<RayContact<V>, Stop<V>> {
+    fn shrink(&mut self, bracket: &mut Bracket<'_, V>, mut portal: Triangle<V>) -> Result<RayContact<V>, Stop<V>> {
         let tolerance = bracket.tolerance();
         bracket.around = Some(portal.corners.map(|p| p.point));
         let mut last = V::Scalar::infinity();
         let mut exchanges = MAX_EXCHANGES;
         loop {
-            let sum = portal.sum();
+            let [w0, w1, w2] = portal.weights;
+            let sum = w0 + w1 + w2;
             if !(sum > Scalar::ZERO) {
                 return Err(Stop::InDoubt);
             }
-            let (plane, inverse) = (portal.plane(sum), sum.recip());
-            let high = portal.high(inverse);
+            let plane = portal.plane(sum);
+            let inverse = sum.recip();
+            let [p, q, s] = &portal.corners;
+            let high = (w0 * p.t + w1 * q.t + w2 * s.t) * inverse;
             if !(high < last) {
                 exchanges -= 1;
                 if exchanges == 0 || !(high < V::Scalar::infinity()) {
@@ -192,7 +209,7 @@ impl<V: Vector> Planes<'_, V> {
                 return Ok(found);
             }
             if bracket.body.is_curved() && self.frame.is_curved(bracket.body, self.frame.normal(plane)) {
-                return sqp(bracket, self.frame, &portal.corners, Some(portal), self.best, self.tilt);
+                return sqp(bracket, self.frame, portal.anticlockwise(weights, high), self.best, self.tilt);
             }
             let before = self.best.tau;
             let r = self.support(bracket, plane)?;
@@ -204,4 +221,90 @@ impl<V: Vector> Planes<'_, V> {
             portal.exchange(r)?;
         }
     }
+}
+
+impl<V: Vector> Triangle<V> {
+    /// Its plane, where the sum of the weights is known.
+    #[inline(always)]
+    fn plane(&self, sum: V::Scalar) -> RayPlane<V::Scalar> {
+        let [p, q, s] = &self.corners;
+        let RayPlane { a, b, .. } = RayPlane::through([p, q, s]);
+        RayPlane { a: a * self.turn, b: b * self.turn, c: sum }
+    }
+
+    /// Puts a point before its plane in the place of the corner that leaves zero inside.
+    #[inline(always)]
+    fn exchange(&mut self, r: RayPoint<V>) -> Result<(), Stop<V>> {
+        let zero = V::Scalar::ZERO;
+        let [p, q, s] = &mut self.corners;
+        let [wp, wq, ws] = self.weights;
+        let turn = self.turn;
+        let (kp, kq, ks) = (p.cross(&r) * turn, q.cross(&r) * turn, s.cross(&r) * turn);
+        if kq >= zero && kp <= zero {
+            (*s, self.weights) = (r, [kq, -kp, ws]);
+        } else if ks >= zero && kq <= zero {
+            (*p, self.weights) = (r, [wp, ks, -kq]);
+        } else if kp >= zero && ks <= zero {
+            (*q, self.weights) = (r, [-ks, wq, kp]);
+        } else {
+            return Err(Stop::InDoubt);
+        }
+        Ok(())
+    }
+
+    /// Bounds the entry by its plane, where the line runs through it by more than an error.
+    #[inline(always)]
+    fn bound_entry(&self, bracket: &mut Bracket<'_, V>, RayPlane { a, b, c }: RayPlane<V::Scalar>, high: V::Scalar) {
+        if is_surrounded(self.corners.each_ref(), bracket.error + bracket.noise) {
+            bracket.pierce(high, (a * a + b * b + c * c).sqrt() / c);
+        } else {
+            bracket.doubt_entry();
+        }
+    }
+
+    fn anticlockwise(&self, [wp, wq, ws]: [V::Scalar; 3], high: V::Scalar) -> Portal<V> {
+        let [p, q, s] = self.corners;
+        let (corners, weights) =
+            if self.turn > Scalar::ZERO { ([p, q, s], [wp, wq, ws]) } else { ([q, p, s], [wq, wp, ws]) };
+        Portal { corners, weights, high }
+    }
+}
+
+/// The triangle of two points and one that is of the first of one shape and of the second of the other, if it contains
+/// zero: where two edges cross, the line runs through the parallelogram of their ends.
+fn mixed<V: Vector>(frame: &RayFrame<V>, p: &RayPoint<V>, q: &RayPoint<V>) -> Option<Triangle<V>> {
+    let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
+    if frame.radius() > zero {
+        return None;
+    }
+    let area = p.cross(q);
+    let turn = one.copysign(area);
+    [[p, q], [q, p]].into_iter().find_map(|[a, b]| {
+        let s = frame.seen(PointPair { a: a.witness.a, b: b.witness.b });
+        let weights = [area.abs(), q.cross(&s) * turn, s.cross(p) * turn];
+        (weights[1] > zero && weights[2] > zero).then_some(Triangle { corners: [s, *p, *q], weights, turn })
+    })
+}
+
+/// The support point along a vector across the ray, if the plane there does not separate and the point is beyond the
+/// line. Where the line touches the body there, to rounding, it is to pass a little farther inside.
+#[cold]
+#[inline(never)]
+fn support_across<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    frame: &RayFrame<V>,
+    toward: (V::Scalar, V::Scalar),
+) -> Result<RayPoint<V>, Stop<V>> {
+    let across = frame.vector(toward).unit().ok_or(Stop::InDoubt)?;
+    let p: RayPoint<_> = frame.support(bracket, across)?;
+    bracket.advance(across, p.point)?;
+    let beyond = (p.point - frame.foot()).dot(across) + frame.radius();
+    if beyond > Scalar::ZERO {
+        return Ok(p);
+    }
+    let inward = bracket.noise * V::Scalar::from_f64(0.5);
+    if bracket.radius == Scalar::ZERO && frame.foot() == bracket.line().foot && beyond > -inward {
+        return Err(Stop::Touches(-across * inward));
+    }
+    Err(Stop::InDoubt)
 }

@@ -10,12 +10,11 @@
 //! ```
 
 use convex_support::{Scalar, Vector};
-use num_traits::Float as _;
 
-use super::Stop;
-use super::bracket::Bracket;
-use super::line::Line;
 use crate::body::{CastBody, PointPair};
+use crate::cast::Stop;
+use crate::cast::bracket::Bracket;
+use crate::cast::line::Line;
 use crate::curvature;
 use crate::symmetric::{Across, Symmetric, axes_across, cross, dot};
 
@@ -111,11 +110,15 @@ pub(super) struct RayPlane<S> {
 }
 
 impl<S: Scalar> RayPlane<S> {
-    /// The plane through three points, from one of which it rises by `g` along `e` and by `h` along `f`: `e·α = g`,
-    /// `f·α = h`; `c = e×f` is twice the area of the triangle.
-    pub(super) fn through<V: Vector<Scalar = S>>([p, q, s]: [&RayPoint<V>; 3]) -> Self {
-        let ((e, g), (f, h)) = (p.edge_to(q), p.edge_to(s));
+    /// The plane that rises by `g` along `e` and by `h` along `f`: `e·α = g`, `f·α = h`; `c = e×f` is twice the area of
+    /// the triangle.
+    pub(super) fn rising((e, g): (Across<S>, S), (f, h): (Across<S>, S)) -> Self {
         Self { a: g * f.1 - h * e.1, b: e.0 * h - f.0 * g, c: cross(e, f) }
+    }
+
+    /// The plane through three points.
+    pub(super) fn through<V: Vector<Scalar = S>>([p, q, s]: [&RayPoint<V>; 3]) -> Self {
+        Self::rising(p.edge_to(q), p.edge_to(s))
     }
 
     pub(super) fn alpha(self) -> Alpha<S> {
@@ -130,6 +133,7 @@ pub(super) struct RayFrame<V: Vector> {
     e1: V,
     e2: V,
     d: V,
+    /// The line's foot; or where the line only touches the body, a point nearer the body by less than rounding.
     foot: V,
     /// The part of the body's radius that support points are moved by: none where the search sweeps the core by itself.
     radius: V::Scalar,
@@ -140,6 +144,20 @@ impl<V: Vector> RayFrame<V> {
     pub(super) fn new(line: Line<V>, radius: V::Scalar) -> Self {
         let [e1, e2] = axes_across(line.direction);
         Self { e1, e2, d: line.direction, foot: line.foot, radius }
+    }
+
+    /// The same for the line moved by a vector across it.
+    #[inline(always)]
+    pub(super) fn moved(self, by: V) -> Self {
+        Self { foot: self.foot + by, ..self }
+    }
+
+    pub(super) fn foot(&self) -> V {
+        self.foot
+    }
+
+    pub(super) fn radius(&self) -> V::Scalar {
+        self.radius
     }
 
     /// The part of a vector across the ray, and the one against it.
@@ -160,28 +178,42 @@ impl<V: Vector> RayFrame<V> {
         self.e1 * plane.a + self.e2 * plane.b - self.d * plane.c
     }
 
-    /// The `α` of a plane across a vector, if the ray approaches it.
-    #[inline(always)]
-    pub(super) fn alpha(&self, n: V) -> Option<Alpha<V::Scalar>> {
-        let (across, facing) = self.split(n);
-        let per_facing = facing.recip();
-        (facing > Scalar::ZERO).then(|| Alpha { a: across.0 * per_facing, b: across.1 * per_facing })
-    }
-
     /// The support point along any vector.
     #[inline(always)]
     pub(super) fn support(&self, bracket: &mut Bracket<'_, V>, n: V) -> Result<RayPoint<V>, Stop<V>> {
         let (point, witness) = bracket.support(n, n, &[])?;
-        Ok(self.see(point, witness, n))
-    }
-
-    /// A support point of the core along a vector.
-    #[inline(always)]
-    pub(super) fn see(&self, point: V, witness: PointPair<V>, n: V) -> RayPoint<V> {
         let swept = if self.radius > Scalar::ZERO { point + n * (self.radius / n.norm()) } else { point };
         let aside = swept - self.foot;
         let (u, v, t) = (aside.dot(self.e1), aside.dot(self.e2), swept.dot(self.d));
+        Ok(RayPoint { u, v, t, point, witness, alpha: None })
+    }
+
+    /// A point of a body that no radius is added to, by what it is made of.
+    pub(super) fn seen(&self, witness: PointPair<V>) -> RayPoint<V> {
+        let point = witness.a - witness.b;
+        let aside = point - self.foot;
+        let (u, v, t) = (aside.dot(self.e1), aside.dot(self.e2), point.dot(self.d));
         RayPoint { u, v, t, point, witness, alpha: None }
+    }
+
+    /// Both shapes' support points as the normal of a plane that the ray crosses, one against it, changes across it.
+    ///
+    /// What they move by is along the plane, `n·H·δ = 0`, so that the part across the ray tells all of it.
+    pub(super) fn turned(
+        &self,
+        body: &dyn CastBody<Vector = V>,
+        n: V,
+        change: V,
+        witness: PointPair<V>,
+    ) -> PointPair<V> {
+        let (across, change) = (self.split(n).0, self.split(change).0);
+        let axes = [self.e1, self.e2];
+        let moved = |hessian: Symmetric<V::Scalar>| {
+            let shift = hessian.times(change);
+            self.vector(shift) + self.d * dot(across, shift)
+        };
+        let (both, a) = (moved(body.hessian(n, axes)), moved(body.hessian_of_first(n, axes)));
+        PointPair { a: witness.a + a, b: witness.b - (both - a) }
     }
 
     /// The support point of a plane.
@@ -202,17 +234,31 @@ impl<V: Vector> RayFrame<V> {
         body.is_curved() && !body.hessian(n, [self.e1, self.e2]).is_zero()
     }
 
-    /// The derivative of `(u, v)` at `n`: that of the core's support point, and of the radius that it is moved by. In the
-    /// plane there is no second axis to move along.
+    /// The derivative of `(u, v)` at `n`: that of the core's support point, and of the radius that it is moved by.
     #[inline(always)]
     pub(super) fn hessian(&self, body: &dyn CastBody<Vector = V>, n: V) -> Symmetric<V::Scalar> {
-        let mut hessian = body.hessian(n, [self.e1, self.e2]);
+        let core = body.hessian(n, [self.e1, self.e2]);
         if self.radius > Scalar::ZERO {
-            hessian = curvature::swept(hessian, self.radius, self.split(n).0, n.length_squared());
+            curvature::swept(core, self.radius, self.split(n).0, n.length_squared())
+        } else {
+            core
         }
-        if V::DIM == 2 && !hessian.is_zero() {
-            hessian.d = Scalar::ONE;
+    }
+
+    /// The part across the ray, and the one against it, of the derivative of the support point at `n` as that turns
+    /// against the ray.
+    #[inline(always)]
+    pub(super) fn hessian_against(&self, body: &dyn CastBody<Vector = V>, n: V) -> (Across<V::Scalar>, V::Scalar) {
+        let against = -self.d;
+        let (first, second) = (body.hessian(n, [self.e1, against]), body.hessian(n, [self.e2, against]));
+        let (mut across, mut along) = ((first.b, second.b), first.d);
+        if self.radius > Scalar::ZERO {
+            let (per_length, squared) = (self.radius / n.norm(), n.length_squared());
+            let (n_across, n_along) = self.split(n);
+            across.0 -= per_length * (n_across.0 * n_along / squared);
+            across.1 -= per_length * (n_across.1 * n_along / squared);
+            along += per_length * (V::Scalar::ONE - n_along * n_along / squared);
         }
-        hessian
+        (across, along)
     }
 }

@@ -1,0 +1,182 @@
+//! Newton's method on the plane for Algorithm 3, where the body is curved ([`curvature`](crate::curvature)).
+//!
+//! In the plane, where that algorithm is the search, a ray at a curved body would take 17 support points in place of 7
+//! without it, and in space by the paper's method 45 in place of 30.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use crate::body::PointPair;
+use crate::cast::bracket::Bracket;
+use crate::curvature::{between, is_stiff_across, share_of_second, swept, turned};
+use crate::simplex::{MAX_POINTS, Simplex};
+use crate::symmetric::{Across, Symmetric, axes_across, dot};
+
+/// Points of the swept body, each with the unit vector along which it is the support point; the newest last.
+pub(super) struct Recent<V: Vector>(Simplex<V>);
+
+impl<V: Vector> Recent<V> {
+    pub(super) fn new() -> Self {
+        Self(Simplex::new())
+    }
+
+    /// Adds one; another at the same point, or the oldest of three, makes place.
+    pub(super) fn push(&mut self, point: V, along: V, witness: PointPair<V>) {
+        let known = self.0.points().iter().position(|&p| p == point);
+        if let Some(out) = known.or((self.0.points().len() == 3).then_some(0)) {
+            self.0.remove(out);
+        }
+        self.0.push(point, along, witness);
+    }
+
+    pub(super) fn simplex(&self) -> &Simplex<V> {
+        &self.0
+    }
+}
+
+/// Two support points are of one smooth piece if the curvature at one foretells this much of the other.
+const SAME_PIECE: f64 = 0.25;
+
+/// The largest tangent of an angle to turn by.
+const LARGEST: f64 = 0.5;
+
+/// The normal of the plane that should be crossed last, and the tangent of the angle to it, by the points found so far.
+/// `None` where curvature says nothing: at a vertex, or where three points of different pieces span a facet.
+pub(super) fn newton<V: Vector>(
+    bracket: &Bracket<'_, V>,
+    simplex: &Simplex<V>,
+    recent: &Recent<V>,
+    model_error: V::Scalar,
+) -> Option<(V, V::Scalar)> {
+    if !bracket.body.is_curved() {
+        return None;
+    }
+    let seen = SeenAlongRay { bracket, axes: axes_across(bracket.line().direction) };
+    let mut found = [(V::ZERO, V::ZERO); 2 * MAX_POINTS];
+    let mut len = 0;
+    // The corners of the simplex first, since what was found last was found nearest the answer.
+    let corners = simplex.points().iter().zip(simplex.along()).map(|(&p, &n)| (p + n * bracket.radius, n));
+    let others = recent.0.points().iter().zip(recent.0.along()).map(|(&p, &n)| (p, n));
+    for (point, n) in corners.chain(others) {
+        if let Some(n) = seen.normal(n) {
+            found[len] = (point, n);
+            len += 1;
+        }
+    }
+    let (&(point, n), others) = found[..len].split_last()?;
+    let first = seen.piece(point, n, n);
+    if first.is_vertex {
+        return None;
+    }
+    let d = match seen.second_piece(&first, others, n) {
+        (None, alone) => alone?,
+        (Some(_), _) if V::DIM == 2 => return None,
+        (Some(second), _) => {
+            let e = first.edge_to(&second);
+            let hessian = first.hessian.blend(second.hessian, share_of_second(first.p, e));
+            if !is_stiff_across(hessian, e) {
+                return None;
+            }
+            // A vertex has been found already.
+            let more = if second.is_vertex { -model_error } else { model_error };
+            between(hessian, first.p, e, first.reach - second.reach + more)
+        }
+    };
+    let angle = dot(d, d).sqrt() / n.length();
+    // NaN fails this too.
+    if !(angle <= V::Scalar::from_f64(LARGEST)) {
+        return None;
+    }
+    (n + seen.axes[0] * d.0 + seen.axes[1] * d.1).unit().map(|to| (to, angle))
+}
+
+/// A smooth piece at a plane that the ray crosses: how far it reaches along the normal, its point as seen from the
+/// line, and its Hessian.
+struct PieceAlongRay<S> {
+    reach: S,
+    p: Across<S>,
+    hessian: Symmetric<S>,
+    /// Whether the point stays where it is.
+    is_vertex: bool,
+    /// The point before it was turned.
+    found: Across<S>,
+}
+
+impl<S: Scalar> PieceAlongRay<S> {
+    fn edge_to(&self, other: &Self) -> Across<S> {
+        (other.p.0 - self.p.0, other.p.1 - self.p.1)
+    }
+}
+
+/// The piece to go between, if there is one, and the change to the normal that suits the first alone, if one does.
+type SecondPiece<S> = (Option<PieceAlongRay<S>>, Option<Across<S>>);
+
+/// Points and planes as they are seen along the ray; normals have length one against it.
+struct SeenAlongRay<'k, 'b, V: Vector> {
+    bracket: &'k Bracket<'b, V>,
+    axes: [V; 2],
+}
+
+impl<V: Vector> SeenAlongRay<'_, '_, V> {
+    fn across(&self, v: V) -> Across<V::Scalar> {
+        (v.dot(self.axes[0]), v.dot(self.axes[1]))
+    }
+
+    /// A normal, if the ray crosses the plane.
+    fn normal(&self, n: V) -> Option<V> {
+        let facing = -n.dot(self.bracket.line().direction);
+        let n = n / facing;
+        (facing > Scalar::ZERO && n.is_finite()).then_some(n)
+    }
+
+    /// The piece of a point that was found along `n`, turned to another normal.
+    fn piece(&self, point: V, n: V, to: V) -> PieceAlongRay<V::Scalar> {
+        let found = self.across(point - self.bracket.line().foot);
+        let mut hessian = self.bracket.body.hessian(n, self.axes);
+        let is_vertex = hessian.is_zero();
+        // A radius alone needs no iteration.
+        if !is_vertex {
+            hessian = swept(hessian, self.bracket.radius, self.across(n), n.length_squared());
+        }
+        if V::DIM == 2 {
+            // There is no second axis to move along.
+            hessian.d = Scalar::ONE;
+        }
+        let turned = turned(hessian, self.across(n), self.across(to - n));
+        let p = (found.0 + turned.shift.0, found.1 + turned.shift.1);
+        PieceAlongRay { reach: to.dot(point) + turned.rise, p, hessian: turned.hessian, is_vertex, found }
+    }
+
+    /// Of the other pieces the one that would reach farthest beyond the first at the normal that suits the first alone;
+    /// or where the first alone suits none, the one across from which the line lies. And the change to that normal.
+    fn second_piece(&self, first: &PieceAlongRay<V::Scalar>, others: &[(V, V)], n: V) -> SecondPiece<V::Scalar> {
+        let noise = self.bracket.noise;
+        let p = first.p;
+        let alone = first.hessian.is_regular().then(|| first.hessian.solve((-p.0, -p.1)));
+        let mut second = None;
+        let mut best = if alone.is_some() { noise } else { -V::Scalar::infinity() };
+        for &(point, along) in others {
+            let other = self.piece(point, along, n);
+            let e = first.edge_to(&other);
+            // Points no farther apart than rounding are one.
+            let apart = (other.found.0 - p.0, other.found.1 - p.1);
+            let foretold = V::Scalar::from_f64(SAME_PIECE * SAME_PIECE) * dot(apart, apart);
+            if dot(e, e) <= foretold.max(noise * noise) {
+                continue;
+            }
+            let score = match alone {
+                Some(d) => (other.reach - first.reach) + dot(e, d) + dot(p, d) * V::Scalar::from_f64(0.5),
+                None => {
+                    let share = share_of_second(p, e);
+                    let nearest = (p.0 + e.0 * share, p.1 + e.1 * share);
+                    -dot(nearest, nearest)
+                }
+            };
+            if score >= best {
+                best = score;
+                second = Some(other);
+            }
+        }
+        (second, alone)
+    }
+}
