@@ -29,7 +29,7 @@ impl<S: SupportMap> Scene<S> {
     /// let ball = Posed::translated(Ball::new(0.5)?, DVec3::new(-0.05, 0.49, 0.0))?;
     ///
     /// let mut contacts = Vec::new();
-    /// floor.contacts_of(&ball, 0.0, SignedDistanceOptions::default(), &mut contacts);
+    /// floor.all().contacts_of(&ball, 0.0, SignedDistanceOptions::default(), &mut contacts);
     /// assert!(contacts[1].contact.normal.x < -0.09, "the edge of the next tile pushes back");
     /// assert_eq!(floor.leave_out_seams(&mut contacts), 1);
     /// assert_eq!((contacts.len(), contacts[0].contact.normal), (1, DVec3::Y));
