@@ -128,7 +128,7 @@ impl<'s, S: SupportMap> Among<'s, S> {
 
     /// The body with this index, if it is to be asked now, which counts as work; a break where the question ends early.
     #[inline]
-    pub(super) fn next_asked(&self, index: usize, work: &mut Work) -> ControlFlow<(), Option<&'s Body<S>>> {
+    pub(super) fn asked(&self, index: usize, work: &mut Work) -> ControlFlow<(), Option<&'s Body<S>>> {
         let Some(body) = self.body(index) else { return ControlFlow::Continue(None) };
         if self.stops(work) {
             return ControlFlow::Break(());
@@ -149,7 +149,7 @@ impl<'s, S: SupportMap> Among<'s, S> {
         let (mut work, mut limit, mut refused) = (Work::default(), (end, usize::MAX), None);
         let mut look = |index: usize, from: ScalarOf<S>| {
             if (from < limit.0 || index < limit.1)
-                && let Some(body) = self.next_asked(index, &mut work)?
+                && let Some(body) = self.asked(index, &mut work)?
             {
                 match ask(index, from, body) {
                     Ok(next) => limit = next?,

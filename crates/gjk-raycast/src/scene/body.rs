@@ -9,7 +9,7 @@ use crate::{
     ray_cast, signed_distance,
 };
 
-/// A body of a [`Scene`]: a bounded shape, or a half-space.
+/// A body of a [`Scene`](crate::Scene): a bounded shape, or a half-space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound(serialize = "S: serde::Serialize, HalfSpace<S::Vector>: serde::Serialize")))]

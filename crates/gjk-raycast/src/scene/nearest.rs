@@ -146,7 +146,7 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Work {
         let mut work = Work::default();
         let mut look = |index: usize| {
-            if let Some(body) = self.next_asked(index, &mut work)? {
+            if let Some(body) = self.asked(index, &mut work)? {
                 found.extend(tell(index, body));
             }
             ControlFlow::Continue(())

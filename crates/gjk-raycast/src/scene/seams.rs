@@ -10,7 +10,7 @@ use super::result::{BodyContact, PairContact};
 use crate::{Contact, SignedDistanceOptions, signed_distance};
 
 impl<S: SupportMap> Scene<S> {
-    /// Leaves out of the [contacts of a shape](Among::contacts_of) those at seams, and says how many these were: where a
+    /// Leaves out of the [contacts of a shape](crate::Among::contacts_of) those at seams, and says how many these were: where a
     /// floor is made of boxes or triangles, a body that slides over it meets the edges and sides at which they lie on
     /// one another, and would be stopped or thrown up by them.
     ///
@@ -29,7 +29,7 @@ impl<S: SupportMap> Scene<S> {
     /// let ball = Posed::translated(Ball::new(0.5)?, DVec3::new(-0.05, 0.49, 0.0))?;
     ///
     /// let mut contacts = Vec::new();
-    /// floor.contacts_of(&ball, 0.0, SignedDistanceOptions::default(), &mut contacts);
+    /// floor.all().contacts_of(&ball, 0.0, SignedDistanceOptions::default(), &mut contacts);
     /// assert!(contacts[1].contact.normal.x < -0.09, "the edge of the next tile pushes back");
     /// assert_eq!(floor.leave_out_seams(&mut contacts), 1);
     /// assert_eq!((contacts.len(), contacts[0].contact.normal), (1, DVec3::Y));
@@ -42,7 +42,7 @@ impl<S: SupportMap> Scene<S> {
         })
     }
 
-    /// The same of the contacts of [all pairs](Among::contacts_within), of which either body may be one of the pieces:
+    /// The same of the contacts of [all pairs](crate::Among::contacts_within), of which either body may be one of the pieces:
     /// one is left out if all of its points are at seams of one of its bodies with others that touch the other one.
     pub fn leave_out_seams_of_pairs(&self, contacts: &mut Vec<PairContact<S::Vector>>) -> usize {
         leave_out(contacts, |contacts, &PairContact { a, b, contact }| {
@@ -56,7 +56,7 @@ impl<S: SupportMap> Scene<S> {
         })
     }
 
-    /// The same of the [contacts of this scene and another](Among::contacts_between), of which either may be made of
+    /// The same of the [contacts of this scene and another](crate::Among::contacts_between), of which either may be made of
     /// pieces.
     pub fn leave_out_seams_between<T: SupportMap<Vector = S::Vector>>(
         &self,
