@@ -60,8 +60,8 @@ impl<V: Vector> Joint<V> {
 }
 
 /// What a rotation about an axis is wrong by as an operator, in ε, beside what its angle is. The unit axis is wrong by
-/// 1.5, which counts twice. The term of the sine loses 3 and that of `1 − cos ≤ 2` twice 6; sine and cosine themselves 3,
-/// and the sum of the terms 5. The product with the rotation before it loses 4.5.
+/// 1.5, which counts twice. The term of the sine loses 3 and that of `1 − cos ≤ 2` twice 6; sine and cosine themselves
+/// 3, and the sum of the terms 5. The product with the rotation before it loses 4.5.
 const OF_TURN: f64 = 31.0;
 
 /// The way from one moving joint to the next, and how that moves: `x ↦ fixed·motion(value)·x`.
@@ -75,8 +75,8 @@ pub(super) struct JointStage<V: Vector> {
     pub(super) off_axis: V::Scalar,
     /// A unit vector in its own frame, which it turns about or slides along.
     pub(super) axis: V,
-    /// Of a joint that turns: with `A` the matrix of the product with the axis, the rotation is `1 + sin·A + (1 − cos)·A²`
-    /// (Rodrigues), and these are its terms as the fixed rotation turns them.
+    /// Of a joint that turns: with `A` the matrix of the product with the axis, the rotation is `1 + sin·A + (1 −
+    /// cos)·A²` (Rodrigues), and these are its terms as the fixed rotation turns them.
     turn: Option<[V::Matrix; 2]>,
     /// The place of its value among the joint values.
     pub(super) column: usize,
@@ -163,9 +163,9 @@ impl<V: Vector> Moving<V> {
 
     /// The frame beyond a stage.
     ///
-    /// Its origin is a point of this frame, or slides along it. It has the angular velocity `ω + w` with the joint's own
-    /// `w`, which this frame turns, so that its derivative is `ω′ + ω × w`; and what slides at `d` has the acceleration
-    /// `2ω × d` more than a point of this frame (Coriolis).
+    /// Its origin is a point of this frame, or slides along it. It has the angular velocity `ω + w` with the joint's
+    /// own `w`, which this frame turns, so that its derivative is `ω′ + ω × w`; and what slides at `d` has the
+    /// acceleration `2ω × d` more than a point of this frame (Coriolis).
     #[inline]
     pub(super) fn beyond(&self, stage: &JointStage<V>, Value { value, rate, error }: Value<V::Scalar>) -> Self {
         let &JointStage { ref fixed, arm, axis, ref turn, .. } = stage;

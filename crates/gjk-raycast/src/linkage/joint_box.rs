@@ -6,15 +6,15 @@
 //!
 //! > Σ δⱼ·|mⱼ·(x − cⱼ)| + a/2,   mⱼ = n × axisⱼ,
 //!
-//! of which the first is `n·ẋ` in the middle, with `cⱼ` the joint's origin, and `a` bounds the acceleration whatever the
-//! joint values. The least of `n·x` less that sum, over all points of the body, is a support value for each choice of
-//! signs: no point is counted with more than its own way, and those far from the plane may sink far.
+//! of which the first is `n·ẋ` in the middle, with `cⱼ` the joint's origin, and `a` bounds the acceleration whatever
+//! the joint values. The least of `n·x` less that sum, over all points of the body, is a support value for each choice
+//! of signs: no point is counted with more than its own way, and those far from the plane may sink far.
 //!
-//! A box that is not shown to be free is halved along the joint where that takes the most off the bound. Which box comes
-//! first decides how soon a pose is found where the links meet: mostly the one with the least gap in its middle, times the
-//! third power of the part that the gap is of what points may sink. Yet about a place where the links almost meet there
-//! may be tens of thousands of boxes that all seem near to contact. So every fourth time the largest box comes first, and
-//! no part of the whole has to wait until those are done.
+//! A box that is not shown to be free is halved along the joint where that takes the most off the bound. Which box
+//! comes first decides how soon a pose is found where the links meet: mostly the one with the least gap in its middle,
+//! times the third power of the part that the gap is of what points may sink. Yet about a place where the links almost
+//! meet there may be tens of thousands of boxes that all seem near to contact. So every fourth time the largest box
+//! comes first, and no part of the whole has to wait until those are done.
 
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;

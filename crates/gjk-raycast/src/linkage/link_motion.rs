@@ -79,8 +79,8 @@ pub(super) struct PathEdge<'p, S> {
 impl<S: Scalar> PathEdge<'_, S> {
     /// A joint value at a time.
     ///
-    /// With `u = ε/2`, the time was rounded once, and the rate, its product with the time and the sum are: by `3u` of the
-    /// rate and `u` of the larger value.
+    /// With `u = ε/2`, the time was rounded once, and the rate, its product with the time and the sum are: by `3u` of
+    /// the rate and `u` of the larger value.
     #[inline]
     pub(super) fn at(&self, column: usize, time: S) -> Value<S> {
         let (from, to) = (self.from[column], self.to[column]);
@@ -157,8 +157,8 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
         self.at(time).0.velocity_at(point)
     }
 
-    /// What holds at all times ([`Bounds`]), or what holds near the end of the interval, if that is less. With the ball's
-    /// centre `c` and its radius `ρ`, and a time `t` before the end at `e`,
+    /// What holds at all times ([`Bounds`]), or what holds near the end of the interval, if that is less. With the
+    /// ball's centre `c` and its radius `ρ`, and a time `t` before the end at `e`,
     ///
     /// > n·ẍ ≤ n·c̈(e) + |n|·(j·(e − t) + ρ·b),   r·ẋ ≤ r·ċ(e) + |r|·(a·(e − t) + ρ·w),
     ///
@@ -193,7 +193,8 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
         if near < always { near } else { always }
     }
 
-    /// The ball moves along the chord of the way of its centre, which that leaves by `s²/8` of its acceleration at most.
+    /// The ball moves along the chord of the way of its centre, which that leaves by `s²/8` of its acceleration at
+    /// most.
     fn moving_ball(&self, ball: BoundingSphere<V>, [from, to]: [V::Scalar; 2]) -> MovingBall<V> {
         let duration = to - from;
         let (_, frame) = self.at(to);

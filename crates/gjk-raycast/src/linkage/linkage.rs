@@ -193,9 +193,9 @@ impl<S: SupportMap> Linkage<S> {
     /// whichever way the joints have taken in between. Against the normal of a distance it is how much nearer the link
     /// may come to that one.
     ///
-    /// If the joints go straight, within a unit of time, it is no more than the highest speed, nor than that at first and
-    /// half of the highest acceleration. At first the points of a body, whose support function is `h` about an origin of
-    /// the velocity `v`, go along `n` by `n·v + h(n × ω)`.
+    /// If the joints go straight, within a unit of time, it is no more than the highest speed, nor than that at first
+    /// and half of the highest acceleration. At first the points of a body, whose support function is `h` about an
+    /// origin of the velocity `v`, go along `n` by `n·v + h(n × ω)`.
     ///
     /// # Errors
     /// As of [`placed`](Self::placed).
@@ -225,12 +225,12 @@ impl<S: SupportMap> Linkage<S> {
         Ok(near.min(always) + always * (moving.frame.turn_error + epsilons(64.0)))
     }
 
-    /// The derivatives of the time of a first contact on this path by the joint values at both ends of its edge, for each
-    /// joint that moves. `None` where links overlap as the path begins, or touch and do not approach one another.
+    /// The derivatives of the time of a first contact on this path by the joint values at both ends of its edge, for
+    /// each joint that moves. `None` where links overlap as the path begins, or touch and do not approach one another.
     ///
     /// With `n` the normal and `p` the point of contact, joint `j` lifts the link off what it meets by `gⱼ = n·∂p/∂qⱼ`.
-    /// The gap closes at the rate `−Σ gⱼ·q̇ⱼ`, so that the time changes by `Σ gⱼ·δqⱼ` over that, and a change of the value
-    /// at the end of the edge changes that at the time `t` by a share of `t`, one at its beginning by `1 − t`.
+    /// The gap closes at the rate `−Σ gⱼ·q̇ⱼ`, so that the time changes by `Σ gⱼ·δqⱼ` over that, and a change of the
+    /// value at the end of the edge changes that at the time `t` by a share of `t`, one at its beginning by `1 − t`.
     ///
     /// Where there is only one point of contact they are derivatives, and elsewhere one-sided derivatives.
     ///

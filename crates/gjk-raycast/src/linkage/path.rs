@@ -26,8 +26,8 @@ pub struct LinkageOptions<V: Vector> {
     /// As of [`MotionCastOptions::max_iterations`], for each body of a link and each that is near it. Default: that of
     /// a motion cast.
     pub max_iterations: usize,
-    /// The end of what is asked of a path: a time, of which each edge takes 1. A negative value is taken for zero. Default:
-    /// infinity.
+    /// The end of what is asked of a path: a time, of which each edge takes 1. A negative value is taken for zero.
+    /// Default: infinity.
     pub max_time: V::Scalar,
     /// The parts of a box of joint values to look at, after which to give up. Default: 100 000.
     pub max_boxes: usize,
@@ -72,9 +72,9 @@ impl<S: SupportMap> Linkage<S> {
     /// constant rates, in one unit of time. A path of one waypoint is the pose.
     ///
     /// Along each edge, what comes near is found first. What is near is cast, earliest first, and only until the first
-    /// contact so far: [`motion_cast`](crate::motion_cast()) proves it free at all times, or brackets its first contact.
-    /// Bounds account for the rounding of the joints' poses too, so that [`PathOutcome::Free`] is a proof about the
-    /// linkage as it is given by its numbers.
+    /// contact so far: [`motion_cast`](crate::motion_cast()) proves it free at all times, or brackets its first
+    /// contact. Bounds account for the rounding of the joints' poses too, so that [`PathOutcome::Free`] is a proof
+    /// about the linkage as it is given by its numbers.
     ///
     /// # Errors
     /// [`LinkageError`] if the path is empty, a waypoint has another number of values than [`values`](Self::values), a
@@ -89,10 +89,10 @@ impl<S: SupportMap> Linkage<S> {
         self.watched_path(waypoints, scene, options, workspace, None)
     }
 
-    /// [`path`](Self::path), showing an observer what proves it, bodies and intervals in no particular order. Those of a
-    /// free path cover all of its edges, for each body of a link and each of the scene, and each pair that is asked
-    /// about; those of another come up to where it is said to be free. It takes longer: all of these are cast, however far
-    /// away, and along the whole edge, so that brackets may differ from those of [`path`](Self::path) by rounding.
+    /// [`path`](Self::path), showing an observer what proves it, bodies and intervals in no particular order. Those of
+    /// a free path cover all of its edges, for each body of a link and each of the scene, and each pair that is asked
+    /// about; those of another come up to where it is said to be free. It takes longer: all of these are cast, however
+    /// far away, and along the whole edge, so that brackets may differ from those of [`path`](Self::path) by rounding.
     ///
     /// # Errors
     /// As of [`path`](Self::path).
@@ -210,8 +210,8 @@ impl<S: SupportMap> Linkage<S> {
             steps.end(&answer, show);
             Ok::<_, RayCastError>(answer)
         };
-        // The end of a part is none of the edge: where rounding decides whether a contact comes before it, the cast goes
-        // on.
+        // The end of a part is none of the edge: where rounding decides whether a contact comes before it, the cast
+        // goes on.
         let whole = options.max_time - from;
         let mut cast = cast_to(to - from)?;
         if !cast.is_certain() && to - from < whole {
@@ -237,8 +237,8 @@ struct First<V: Vector> {
 }
 
 impl<V: Vector> First<V> {
-    /// Takes the cast of a body. The first contact of all is bracketed by the least bounds of each, and named is the one
-    /// that is certain first, which is the one that is met at the upper bound.
+    /// Takes the cast of a body. The first contact of all is bracketed by the least bounds of each, and named is the
+    /// one that is certain first, which is the one that is met at the upper bound.
     fn take(&mut self, cast: MotionCast<V>, &Near { from, body, .. }: &Near<V::Scalar>, link: usize, met: Met) {
         // The sum with a start is rounded.
         let room = if from == V::Scalar::ZERO { from } else { V::Scalar::EPSILON };

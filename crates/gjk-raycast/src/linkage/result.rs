@@ -1,5 +1,5 @@
-//! What is answered of a path, and what proves that it, or a box of joint values, is free: shown to who wants to see it,
-//! and kept by nobody.
+//! What is answered of a path, and what proves that it, or a box of joint values, is free: shown to who wants to see
+//! it, and kept by nobody.
 
 use convex_support::{Scalar as _, Vector};
 
@@ -119,10 +119,10 @@ impl<V: Vector> PathContact<V> {
 
 /// A body of a link that is proved to be apart from another, for a part of an edge.
 ///
-/// A plane between them proves it: one across the first normal, or across the second, or one whose normal goes straight,
-/// at a constant rate, from the one to the other. At all times of the interval the bodies are apart along one of these by
-/// more than the target distance. Two bodies are free along an edge if such intervals cover it. That can be checked with
-/// the positions of the joints alone, and a bound on how far points leave the chords of their ways.
+/// A plane between them proves it: one across the first normal, or across the second, or one whose normal goes
+/// straight, at a constant rate, from the one to the other. At all times of the interval the bodies are apart along one
+/// of these by more than the target distance. Two bodies are free along an edge if such intervals cover it. That can be
+/// checked with the positions of the joints alone, and a bound on how far points leave the chords of their ways.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeInterval<V: Vector> {
     /// The edge, counted from 0.

@@ -1,10 +1,10 @@
 //! Which bodies may come near one another along an edge, and when.
 //!
 //! The edge is halved again and again. At the middle of each part the joints are placed once, for all links that the
-//! world sees. A ball around a link has moved from there by no more than its velocity `v` and its acceleration `a` there tell, and a bound
-//! on how fast that changes: by `v·h + a·h²/2 + j·h³/6` within the time `h`. If nothing is within that reach, the link is
-//! free for the whole part; else, once the reach is not much more than the ball itself, its bodies and what is near them
-//! are left to be cast.
+//! world sees. A ball around a link has moved from there by no more than its velocity `v` and its acceleration `a`
+//! there tell, and a bound on how fast that changes: by `v·h + a·h²/2 + j·h³/6` within the time `h`. If nothing is
+//! within that reach, the link is free for the whole part; else, once the reach is not much more than the ball itself,
+//! its bodies and what is near them are left to be cast.
 
 use alloc::vec::Vec;
 use core::ops::{ControlFlow, Range};
@@ -88,8 +88,8 @@ struct SweptBall<V: Vector> {
 }
 
 impl<V: Vector> Sweep<'_, V> {
-    /// Shows what may come near until the end, in the order of time but for what is near for long. Who is shown it answers
-    /// with a time from which on nothing matters.
+    /// Shows what may come near until the end, in the order of time but for what is near for long. Who is shown it
+    /// answers with a time from which on nothing matters.
     pub(super) fn run(
         &mut self,
         show: &mut impl FnMut(&Near<V::Scalar>) -> Result<V::Scalar, RayCastError>,
@@ -152,8 +152,8 @@ impl<V: Vector> Sweep<'_, V> {
         }
     }
 
-    /// Looks for what is near a link, body by body. If something is, and the link moves too far, the part is to be halved
-    /// instead.
+    /// Looks for what is near a link, body by body. If something is, and the link moves too far, the part is to be
+    /// halved instead.
     fn is_coarse(&mut self, index: usize, [from, to]: [V::Scalar; 2], half: V::Scalar, is_last: bool) -> bool {
         let LinkView { link, base, ref route } = self.skeleton.views[index];
         let (link, base) = (&self.skeleton.links[link], base.map(|base| &self.skeleton.links[base]));

@@ -16,10 +16,10 @@
 //! The highest facet mostly stays the highest, and as long as it does, its level is as smooth as the motion, also where
 //! the boxes begin to overlap.
 //!
-//! Well apart, or deep in one another, the boxes are seen by the highest facet. Nearly in contact, a support point along
-//! its normal tells its level as well as that can be known. Where they overlap by more than the level may be wrong by,
-//! the line through zero along the normal proves it: on one side of zero it goes through the facet, and on the other
-//! side it is within the difference.
+//! Well apart, or deep in one another, the boxes are seen by the highest facet. Nearly in contact, a support point
+//! along its normal tells its level as well as that can be known. Where they overlap by more than the level may be
+//! wrong by, the line through zero along the normal proves it: on one side of zero it goes through the facet, and on
+//! the other side it is within the difference.
 
 use convex_support::{Core, CoreKind, Hint, Parallelotope, Scalar, SupportMap as _, Vector};
 use num_traits::Float;

@@ -156,8 +156,8 @@ impl<S: Scalar> Linear<S> {
     }
 }
 
-/// Joints are taken from the last one on. Let `y` be a point as those so far have moved it, with the bounds `s`, `a` and
-/// `j`. A joint that turns at the rate `w` takes it to `R(wt)·y`, and the derivatives of a product are
+/// Joints are taken from the last one on. Let `y` be a point as those so far have moved it, with the bounds `s`, `a`
+/// and `j`. A joint that turns at the rate `w` takes it to `R(wt)·y`, and the derivatives of a product are
 ///
 /// > s′ = w·l + s,   a′ = w²·l + 2w·s + a,   j′ = w³·l + 3w²·s + 3w·a + j,
 ///
@@ -209,8 +209,9 @@ mod tests {
     use super::{Bounds, ChainMotion};
     use crate::{RigidMotion, Trajectory as _};
 
-    /// The way from joint to joint is short, however far away both are. If the pivot of one were added to how far it has
-    /// moved, and that of the next subtracted, the sum would have lost digits of the place, of which no error tells.
+    /// The way from joint to joint is short, however far away both are. If the pivot of one were added to how far it
+    /// has moved, and that of the next subtracted, the sum would have lost digits of the place, of which no error
+    /// tells.
     #[test]
     fn joints_far_from_the_origin_lose_no_more_than_is_said() {
         let (centers, rates) = ([(0.0, 0.0), (1.0, 0.25), (1.5, 1.0)], [0.75, 1.25, -0.5]);

@@ -20,13 +20,14 @@
 //! and that `E ≤ √2·L` across, since the larger of `d` and `L·|m·e|` is more than their mean.
 //!
 //! # Bodies without an inside
-//! They may pass through one another, as a point through a plate or a rod across a rod. The difference of such bodies has no inside either: they never overlap by more than rounding, and touch at one time
-//! only, which nobody can name to the last bit. That they have touched is certain all the same. Let `w(t)` be corners
-//! of the difference, each between two points that stay with their bodies, as many as there are dimensions, and look at
-//! them along a fixed unit vector `n`. As long as zero is seen within the triangle of the corners (in 2D between two
-//! corners), the line through zero along `n` pierces the triangle at one height `s(t)`, which is continuous. If it is
-//! positive at the beginning and negative at the end, it has been zero in between, and there zero was a point of the
-//! triangle, and so of the difference.
+//! They may pass through one another, as a point through a plate or a rod across a rod. The difference of such bodies
+//! has no inside either: they never overlap by more than rounding, and touch at one time only, which nobody can name to
+//! the last bit. That they have touched is certain all the same. Let `w(t)` be corners of the difference, each between
+//! two points that stay with their bodies, as many as there are dimensions, and look at them along a fixed unit vector
+//! `n`. As long as zero is seen within the triangle of the corners (in 2D between two corners), the line through zero
+//! along `n` pierces the triangle at one height `s(t)`, which is continuous. If it is positive at the beginning and
+//! negative at the end, it has been zero in between, and there zero was a point of the triangle, and so of the
+//! difference.
 //!
 //! How the corners are seen in between is known by how far they move at most. A component of their path whose second
 //! derivative is at most `m` in amount is off its chord by at most `m·τ²/8`, with `τ` the duration.

@@ -1,13 +1,13 @@
 //! Looks at two moving bodies by points that are known to be closest, or were so at the last look.
 //!
-//! Of balls and capsules the closest points of the cores are known in closed form. One support point proves that a plane
-//! between the points keeps the bodies apart. Far from contact that is all. Near contact the same point tells the
+//! Of balls and capsules the closest points of the cores are known in closed form. One support point proves that a
+//! plane between the points keeps the bodies apart. Far from contact that is all. Near contact the same point tells the
 //! distance as well as it can be known; and where the bodies overlap but their cores do not, the points prove that.
 //!
 //! Of other bodies the same corners are mostly closest near contact as a moment ago. Then a plane across them is known,
-//! and one support point proves that it separates the bodies. Where they overlap, the closest points of their cores prove
-//! that if they are nearer than the radii; and of cores that overlap themselves, a simplex of the corners and the point
-//! of the difference farthest from them has zero inside.
+//! and one support point proves that it separates the bodies. Where they overlap, the closest points of their cores
+//! prove that if they are nearer than the radii; and of cores that overlap themselves, a simplex of the corners and the
+//! point of the difference farthest from them has zero inside.
 
 use convex_support::{Scalar, SupportMap as _, Vector};
 use num_traits::Float;

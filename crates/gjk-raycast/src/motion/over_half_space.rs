@@ -108,8 +108,8 @@ struct OverHalfSpace<'s, V: Vector> {
 }
 
 impl<V: Vector> OverHalfSpace<'_, V> {
-    /// How high the body's lowest point is over the half-space at a time, less the target distance, and the point of its
-    /// core, in the world.
+    /// How high the body's lowest point is over the half-space at a time, less the target distance, and the point of
+    /// its core, in the world.
     ///
     /// The height is that of the sum of the origin, what the motion adds to that, and the support point, so that a body
     /// far along the plane is known as well as any other.

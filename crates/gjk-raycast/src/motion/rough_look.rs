@@ -35,7 +35,7 @@ impl<V: Vector> MovingPair<'_, V> {
         let face = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
         match face {
             Some(face) => self.at_face(placed, pair, &face, axis, limit),
-            None => self.searched(placed, pair, axis, None, limit),
+            None => self.searched(placed, pair, axis, None, None, limit),
         }
     }
 
@@ -70,8 +70,8 @@ impl<V: Vector> MovingPair<'_, V> {
                 return Some(self.across(placed, v / length, face.closest_points(), [distance, error]));
             }
         }
-        let begin = if signed > radius { Some((face, known)) } else { None };
-        self.searched(placed, pair, axis, begin, limit)
+        let begins_there = signed > radius;
+        self.searched(placed, pair, axis, begins_there.then_some(face), begins_there.then_some(known), limit)
     }
 
     /// The same by GJK, which begins along an axis, or with a face and the support point across the vector to it.
@@ -80,26 +80,24 @@ impl<V: Vector> MovingPair<'_, V> {
         placed: &Placed<'_, V>,
         pair: &mut Pair<'_, Placed<'_, V>>,
         axis: V,
-        begin: Option<(&CornerFace<V>, (V, PointPair<V>))>,
+        face: Option<&CornerFace<V>>,
+        known: Option<(V, PointPair<V>)>,
         limit: V::Scalar,
     ) -> Option<Instant<V>> {
         let size = pair.size(placed.offset);
         let frame = Frame::new(pair, placed.offset, size);
         let Frame { scale, per_unit, radius, error, .. } = frame;
         let in_unit = |(point, points): (V, PointPair<V>)| (point * per_unit, times(points, per_unit));
-        let (mut state, known) = match begin {
-            None => (Gjk::new(axis), None),
-            Some((face, known)) => {
-                let state = Gjk::at_face(face.corners().map(in_unit), face.weights, face.v * per_unit);
-                (state, Some(in_unit(known)))
-            }
+        let mut state = match face {
+            None => Gjk::new(axis),
+            Some(face) => Gjk::at_face(face.corners().map(in_unit), face.weights, face.v * per_unit),
         };
         let options = GjkOptions {
             limit: limit * per_unit + radius,
             tolerance: Scalar::from_f64(ROUGH),
             ..GjkOptions::new(state.normal, SignedDistanceOptions::<V>::new().max_iterations)
         };
-        let end = gjk(&mut state, pair, frame, options, known, &mut Observer::none());
+        let end = gjk(&mut state, pair, frame, options, known.map(in_unit), &mut Observer::none());
         self.count(state.iterations);
         let (distance, near) = (state.lower - radius, error * Scalar::from_f64(NEAR));
         let unit = state.axis.unit()?;
