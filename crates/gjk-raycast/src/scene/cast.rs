@@ -47,6 +47,21 @@ impl<S: SupportMap> Among<'_, S> {
         self.all_hits(&swept_point(ray), options.max_lambda, hits, |hit| hit.lambda, ask)
     }
 
+    /// [`ray_cast`](Self::ray_cast) for each of many rays, on all threads of the current [rayon](https://docs.rs/rayon)
+    /// pool.
+    #[cfg(feature = "rayon")]
+    pub fn par_ray_casts(
+        &self,
+        rays: &[Ray<S::Vector>],
+        options: RayCastOptions<S::Vector>,
+    ) -> Vec<Result<SceneRayCast<S::Vector>, RayCastError>>
+    where
+        S: Sync,
+    {
+        use rayon::prelude::*;
+        rays.par_iter().map(|&ray| self.ray_cast(ray, options)).collect()
+    }
+
     /// Whether the ray hits any body: a shadow ray.
     ///
     /// # Errors
