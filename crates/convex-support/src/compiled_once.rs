@@ -32,7 +32,8 @@ pub fn of_vectors<V: Vector, T: 'static>([vec2, vec3, vec3a, dvec2, dvec3]: [&'s
 
 /// Declares a function whose body is compiled for each type of vector here; a call finds the one for its own.
 ///
-/// Which of the five it is, the compiler knows where it is called, and leaves the others out.
+/// Which of the five it is, the compiler knows where it is called, and leaves the others out. That is a function of its
+/// own: within its callers it would have them save registers for a search that the first look at a pair mostly spares.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! compiled_once {
@@ -42,7 +43,7 @@ macro_rules! compiled_once {
     ) => {
         $(#[$attribute])*
         #[allow(clippy::type_complexity, reason = "it is said once")]
-        #[inline]
+        #[inline(never)]
         $visibility fn $name<$V: $crate::Vector>($($argument: $T),*) -> $R {
             use $crate::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
             fn once<$V: $crate::Vector>($($argument: $T),*) -> $R $body
