@@ -23,10 +23,10 @@ pub struct FreeStep<S> {
 impl<V: Vector> Distance<V> {
     /// For which changes of the pose of `a` it stays farther from `b` than a margin.
     ///
-    /// A change turns `a` by an angle about any axis through the pivot, and moves it: no point goes farther than the way
-    /// of the pivot and the angle times the point's distance from it. Along the normal of the plane that separates the
-    /// bodies, nothing comes nearer by more. So one distance serves until a body has gone as far as it tells: a controller
-    /// that asks at each of its steps mostly need not.
+    /// A change turns `a` by an angle about any axis through the pivot, and moves it: no point goes farther than the
+    /// way of the pivot and the angle times the point's distance from it. Along the normal of the plane that separates
+    /// the bodies, nothing comes nearer by more. So one distance serves until a body has gone as far as it tells: a
+    /// controller that asks at each of its steps mostly need not.
     ///
     /// ```
     /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};

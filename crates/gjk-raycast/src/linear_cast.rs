@@ -5,7 +5,9 @@ use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
-use crate::cast::{Approach, Cast, CastHit, CastRay, Part, Quicker, RayOf, cast, certain_closely, settle_start};
+use crate::cast::{
+    CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, RayOf, cast, certain_closely, settle_start,
+};
 use crate::extra::in_static;
 use crate::observer::Observer;
 use crate::shape::Shape;
@@ -170,18 +172,18 @@ compiled_once! {
         if cores.iter().any(|core| matches!(core.kind, CoreKind::Point(_)))
             && let Some(known) = certain_closely(body, ray, direction_error, &wanted, observer)
         {
-            return answer(&Cast::of_certain(&known, body, ray), [a, b], cores, motion, options);
+            return answer(&ObstacleCast::of_certain(&known, body, ray), [a, b], cores, motion, options);
         }
         let mut cast = cast(body, whole, &wanted, observer);
         let skin = options.target_distance.max(Scalar::ZERO);
-        settle_start(&mut cast, Approach { a, skin, b: RayOf::Shape(b), direction: ray.direction }, &wanted);
+        settle_start(&mut cast, RayBodies { a, skin, b: RayOf::Shape(b), direction: ray.direction }, &wanted);
         answer(&cast, [a, b], cores, motion, options)
     }
 }
 
 /// What a cast says of two shapes.
 fn answer<V: Vector>(
-    cast: &Cast<V>,
+    cast: &ObstacleCast<V>,
     [a, b]: [Shape<'_, V>; 2],
     [core_a, core_b]: [Core<V>; 2],
     motion: Motion<V>,

@@ -231,8 +231,8 @@ impl<V: Vector> IntersectOptions<V> {
 pub enum CastMethod {
     /// The fastest. First the shape is asked where the line [certainly
     /// enters](convex_support::SupportMap::certain_crossing) it, if it knows that. Then, in 3D, a triangle of support
-    /// points that the ray pierces (a portal) is moved towards the surface, by the simplex method of linear programming.
-    /// Where that is in doubt, and in 2D, this is the same as [`Gjk`](Self::Gjk).
+    /// points that the ray pierces (a portal) is moved towards the surface, by the simplex method of linear
+    /// programming. Where that is in doubt, and in 2D, this is the same as [`Gjk`](Self::Gjk).
     #[default]
     Portal,
     /// The paper's Algorithm 3: each plane is across the vector from the ray's point to the simplex of support points.
@@ -297,8 +297,8 @@ impl<V: Vector> RayCastOptions<V> {
         Self { extra: Quicker::named(), ..Self::lean() }
     }
 
-    /// The default options, naming no more machine code than the closed forms of the shape and Algorithm 3: a program in
-    /// which all options are lean has two fifths of the code for rays.
+    /// The default options, naming no more machine code than the closed forms of the shape and Algorithm 3: a program
+    /// in which all options are lean has two fifths of the code for rays.
     ///
     /// What is left out is the faster search of [`CastMethod::Portal`], which is then the same as
     /// [`Gjk`](CastMethod::Gjk) where no closed form is certain: a search takes two to five times as long, and its

@@ -5,8 +5,8 @@ use num_traits::Float;
 
 use crate::body::{CastBody, Measures, Single};
 use crate::cast::{
-    Approach, Cast, CastHit, CastRay, LocalRay, Part, RayOf, cast, certain, certain_closely, is_plain, settle_start,
-    show,
+    CastHit, CastRay, LocalRay, ObstacleCast, Part, RayBodies, RayOf, cast, certain, certain_closely, is_plain,
+    settle_start, show,
 };
 use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
@@ -129,8 +129,8 @@ compiled_once! {
         }
         let mut cast = cast(body, CastRay::of(ray, Part::Whole), options, observer);
         let b = RayOf::Point(ray.source);
-        let approach = Approach { a: shape, skin: Scalar::ZERO, b, direction: ray.direction };
-        settle_start(&mut cast, approach, options);
+        let bodies = RayBodies { a: shape, skin: Scalar::ZERO, b, direction: ray.direction };
+        settle_start(&mut cast, bodies, options);
         answer(cast, ray)
     }
 }
@@ -184,7 +184,7 @@ fn late<V: Vector>(
 
 /// What a cast says of a ray.
 #[inline(always)]
-fn answer<V: Vector>(cast: Cast<V>, ray: Ray<V>) -> RayCast<V> {
+fn answer<V: Vector>(cast: ObstacleCast<V>, ray: Ray<V>) -> RayCast<V> {
     let outcome = match cast.outcome {
         Outcome::Hit(CastHit { lambda, normal, .. }) => {
             let point = if lambda > Scalar::ZERO { ray.at(lambda) } else { ray.source };

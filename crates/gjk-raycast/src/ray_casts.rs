@@ -10,8 +10,8 @@ use num_traits::Float as _;
 use crate::cast::is_plain;
 use crate::{Outcome, Ray, RayCast, RayCastError, RayCastOptions, ray_cast};
 
-/// Rays after which a batch forgets the warm start, so that its pieces can be cast on any number of threads and come out
-/// alike.
+/// Rays after which a batch forgets the warm start, so that its pieces can be cast on any number of threads and come
+/// out alike.
 const RAYS_PER_PIECE: usize = 256;
 
 /// Casts many rays against one shape, in their order; each begins with [what the one before tells](crate::WarmStart).

@@ -28,8 +28,8 @@ pub(crate) struct StartingPair<'s, V: Vector> {
 }
 
 impl<V: Vector> StartingPair<'_, V> {
-    /// Answers a hit at the start by a point of both shapes, and the normal if they only touch: the cast knows where the
-    /// motion enters, which is behind the start or, sliding, ahead of it.
+    /// Answers a hit at the start by a point of both shapes, and the normal if they only touch: the cast knows where
+    /// the motion enters, which is behind the start or, sliding, ahead of it.
     #[cold]
     #[inline(never)]
     pub(crate) fn touch(&self, answer: &mut LinearCast<V>, options: &LinearCastOptions<V>) {

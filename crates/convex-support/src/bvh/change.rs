@@ -23,8 +23,8 @@ use crate::{Aabb, Vector};
 const WORSE: f64 = 1.5;
 
 impl<V: Vector> Bvh<V> {
-    /// Gives every item the box that `box_of` says, in time proportional to their number. If the boxes have moved so far
-    /// that the tree has become half as costly again as when it was built, it is built anew.
+    /// Gives every item the box that `box_of` says, in time proportional to their number. If the boxes have moved so
+    /// far that the tree has become half as costly again as when it was built, it is built anew.
     ///
     /// Items are asked for in the order of their numbers.
     pub fn refit(&mut self, mut box_of: impl FnMut(usize) -> Aabb<V>) {

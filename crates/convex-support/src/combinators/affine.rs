@@ -155,9 +155,10 @@ impl<S: SupportMap> SupportMap for Affine<S> {
 
     /// The line is seen from where the shape's origin is taken to, and from there mapped onto the shape.
     ///
-    /// With the computed inverse `N` and `R = 1 − M·N`, a point `y` comes to `x = N·y` and, as `r = M·x − y` is computed
-    /// in twice the precision, to `x − N·r`: as if the line were displaced by `R·r` before it is mapped exactly. Where
-    /// it matters `y` is no longer than 2 sizes. The foot loses `3uD + 2uS`, and the difference from the origin `uD`.
+    /// With the computed inverse `N` and `R = 1 − M·N`, a point `y` comes to `x = N·y` and, as `r = M·x − y` is
+    /// computed in twice the precision, to `x − N·r`: as if the line were displaced by `R·r` before it is mapped
+    /// exactly. Where it matters `y` is no longer than 2 sizes. The foot loses `3uD + 2uS`, and the difference from the
+    /// origin `uD`.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
         let (inverse, zero) = (self.inverse?, ScalarOf::<S>::ZERO);

@@ -184,8 +184,8 @@ impl<V: Vector> NearLine<V> {
         if is_near { Some(near) } else { None }
     }
 
-    /// The line without a branch, and whether it is [near](Self::new). Where `FAR` is not set, only a line is near whose
-    /// source is.
+    /// The line without a branch, and whether it is [near](Self::new). Where `FAR` is not set, only a line is near
+    /// whose source is.
     #[inline(always)]
     pub(super) fn seen<const FAR: bool>(line: LineQuery<V>, origin: V, size: V::Scalar) -> (Self, bool) {
         let LineQuery { source, direction, error, .. } = line;
@@ -366,8 +366,8 @@ impl<V: Vector> NearLine<V> {
     /// The side of that, or beyond which end the line enters the infinite cylinder.
     ///
     /// The capsule is within that cylinder, and contains the ball at each end. So where the line enters the side
-    /// between the ends, the slack of the side's chord is certain before the entry, and behind it as well if that point is
-    /// between the ends by more than the error.
+    /// between the ends, the slack of the side's chord is certain before the entry, and behind it as well if that point
+    /// is between the ends by more than the error.
     #[inline(always)]
     pub(super) fn side(
         &self,
@@ -574,9 +574,9 @@ impl<V: Vector> Chord<V> {
     }
 
     /// Whether the line passes the ball, or the disc of a set as long as `length` across it, by more than an error, and
-    /// so far that the plane across its nearest point `x` has the set behind it: as `x` is wrong by up to `e`, that plane
-    /// leans by `e/|x|`, and `|x|·(|x| − r) ≥ e·(r + e + length)` is enough. With `|x|² − r²` at most twice the left
-    /// side, three times as much leaves room for rounding.
+    /// so far that the plane across its nearest point `x` has the set behind it: as `x` is wrong by up to `e`, that
+    /// plane leans by `e/|x|`, and `|x|·(|x| − r) ≥ e·(r + e + length)` is enough. With `|x|² − r²` at most twice the
+    /// left side, three times as much leaves room for rounding.
     #[inline(always)]
     fn is_past(&self, radius: V::Scalar, error: V::Scalar, length: V::Scalar) -> bool {
         -self.inside >= (radius + error + length) * error * V::Scalar::from_f64(3.0)

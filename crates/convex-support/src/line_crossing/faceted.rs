@@ -136,8 +136,8 @@ impl<S: Scalar> ClippedLines<S> {
     }
 }
 
-/// [`clip`] of many lines, each at one plane after the other; of one line, planes are side by side. Of planes that are entered at the same parameter it finds the same one: the first of the
-/// first row.
+/// [`clip`] of many lines, each at one plane after the other; of one line, planes are side by side. Of planes that are
+/// entered at the same parameter it finds the same one: the first of the first row.
 #[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
 #[inline(always)]
 pub(super) fn clip_lines<S: Scalar>(

@@ -22,8 +22,8 @@ pub const LINES: usize = 32;
 /// A number of each line.
 pub(super) type Lane<S> = [S; LINES];
 
-/// Lines, coordinate by coordinate, and what a shape [certainly knows](crate::CrossedByLine::certain_crossings) of them.
-/// While it is asked, it may write over them.
+/// Lines, coordinate by coordinate, and what a shape [certainly knows](crate::CrossedByLine::certain_crossings) of
+/// them. While it is asked, it may write over them.
 #[doc(hidden)]
 #[derive(Clone, Debug)]
 pub struct Lines<S> {

@@ -152,8 +152,8 @@ impl<V: Vector> From<Crossed<V>> for LineCrossing<V> {
 )]
 pub trait CrossedByLine: SupportMap {
     /// Where the line through `source` along `direction` is in the core swept by a ball of the given `radius`, in
-    /// closed form; `source` is relative to the [origin](Core::origin) of the core. [`LineCrossing::Unknown`] where this
-    /// core and this radius have none.
+    /// closed form; `source` is relative to the [origin](Core::origin) of the core. [`LineCrossing::Unknown`] where
+    /// this core and this radius have none.
     fn core_line_crossing(
         &self,
         source: Self::Vector,
@@ -161,8 +161,8 @@ pub trait CrossedByLine: SupportMap {
         radius: ScalarOf<Self>,
     ) -> LineCrossing<Self::Vector>;
 
-    /// What [`certain_crossing`](SupportMap::certain_crossing) tells in plain numbers of many lines, to the last bit; of
-    /// those that it knows nothing of, or that cost a branch, nothing. `false`, as the provided method returns, if
+    /// What [`certain_crossing`](SupportMap::certain_crossing) tells in plain numbers of many lines, to the last bit;
+    /// of those that it knows nothing of, or that cost a branch, nothing. `false`, as the provided method returns, if
     /// nothing is ever known.
     #[doc(hidden)]
     #[inline]

@@ -73,9 +73,9 @@ impl<V: Vector> Triangle<V> {
     /// triangle itself, where the line has crossed it even if its corners are moved by up to an `error`.
     ///
     /// Seen along the line, no point of a side is moved by more than the error `e`, so that the line crosses the
-    /// triangle still if it is seen more than `e` inside of all sides. With the cosine `s` at which it crosses the plane
-    /// it is so where it crosses more than `e/s` inside of them; and a point of the moved triangle is no farther than
-    /// `e` from the plane, which the line leaves behind by as much after `e/s`.
+    /// triangle still if it is seen more than `e` inside of all sides. With the cosine `s` at which it crosses the
+    /// plane it is so where it crosses more than `e/s` inside of them; and a point of the moved triangle is no farther
+    /// than `e` from the plane, which the line leaves behind by as much after `e/s`.
     fn prism_crossing(&self, radius: V::Scalar, error: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
         let PlanarTriangle { corners: [a, b, _], axes: [u, v], length, along, height } = self.in_its_plane()?;
         let (base, from_a) = rebased(source - a, direction, direction.length_squared().recip());

@@ -1,6 +1,7 @@
 //! What is certain about the first point of a ray in a body, of all that searches find: the only code that decides
 //! about a miss, a lower bound, or whether the two bounds have met, where a shape does not know it [for
-//! certain](super::certain()). Where the ray starts within rounding of the body, `start.rs` looks again at what was decided.
+//! certain](super::certain()). Where the ray starts within rounding of the body, `start.rs` looks again at what was
+//! decided.
 //!
 //! A body lies behind each of its supporting planes, so that a ray is not in it before it has crossed the plane; and a
 //! ray is in it, at the latest, where it meets a point made of support points. The searches choose where to look, and

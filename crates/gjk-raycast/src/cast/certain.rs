@@ -7,7 +7,7 @@ use num_traits::Float as _;
 
 use super::bracket::Bracket;
 use super::line::Line;
-use super::{Cast, CastHit, RayContact, Stop};
+use super::{CastHit, ObstacleCast, RayContact, Stop};
 use crate::body::{CastBody, Measures};
 use crate::observer::Observer;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCast, RayCastOptions, RayHit, Status};
@@ -104,8 +104,8 @@ pub(crate) fn show<B: CastBody + ?Sized>(
 }
 
 /// Closes the bracket between the plane at the entry and the entry, or finds a plane that the whole ray is before: as
-/// with a search, what the shape says is where to look, and the plane is that of a support point. If it is not where the
-/// entry is, the answer is in doubt.
+/// with a search, what the shape says is where to look, and the plane is that of a support point. If it is not where
+/// the entry is, the answer is in doubt.
 #[inline(always)]
 pub(super) fn at_certain_entry<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     let line = bracket.line();
@@ -156,7 +156,7 @@ fn support<V: Vector>(bracket: &mut Bracket<'_, V>, n: V) -> Result<(), Stop<V>>
     bracket.advance(n, point)
 }
 
-impl<V: Vector> Cast<V> {
+impl<V: Vector> ObstacleCast<V> {
     /// What is certain of a ray and a body.
     pub(crate) fn of_certain<B: CastBody<Vector = V> + ?Sized>(answer: &RayCast<V>, body: &B, ray: Ray<V>) -> Self {
         let &RayCast { ref outcome, lower, upper, status, iterations } = answer;

@@ -26,7 +26,7 @@ pub(crate) use line::{CastRay, LocalRay, Part};
 use outline::bound_entry;
 use portal::portal;
 use start::SettleFn;
-pub(crate) use start::{Approach, RayOf, settle_start};
+pub(crate) use start::{RayBodies, RayOf, settle_start};
 
 /// What is quicker than Algorithm 3 alone, and the second look at what that leaves open.
 #[allow(clippy::type_complexity, reason = "it is said once")]
@@ -36,7 +36,8 @@ pub(crate) struct Quicker<V: Vector> {
     touch_beside: fn(&mut Bracket<'_, V>, &Simplex<V>, V, V::Scalar, Option<V>) -> Option<RayContact<V>>,
 }
 
-type CastFn<V> = fn(&mut dyn CastBody<Vector = V>, CastRay<V>, &RayCastOptions<V>, &mut Observer<'_, V>) -> Cast<V>;
+type CastFn<V> =
+    fn(&mut dyn CastBody<Vector = V>, CastRay<V>, &RayCastOptions<V>, &mut Observer<'_, V>) -> ObstacleCast<V>;
 
 impl<V: Vector> Quicker<V> {
     pub(crate) const TABLE: Self = Self { cast: cast_by::<V, true>, settle: start::settle, touch_beside };
@@ -54,7 +55,7 @@ pub(crate) fn cast<V: Vector>(
     ray: CastRay<V>,
     options: &RayCastOptions<V>,
     observer: &mut Observer<'_, V>,
-) -> Cast<V> {
+) -> ObstacleCast<V> {
     let cast = options.extra.get().map_or(cast_by::<V, false> as CastFn<V>, |extra| extra.cast);
     if options.warm_start.is_some() {
         warm_cast(cast, body, ray, options, observer)
@@ -71,7 +72,7 @@ fn warm_cast<V: Vector>(
     ray: CastRay<V>,
     options: &RayCastOptions<V>,
     observer: &mut Observer<'_, V>,
-) -> Cast<V> {
+) -> ObstacleCast<V> {
     let told = RayCastOptions { max_iterations: options.max_iterations.min(MAX_WARM), ..*options };
     let warm = cast(body, ray, &told, observer);
     let is_known = match warm.outcome {
@@ -84,7 +85,7 @@ fn warm_cast<V: Vector>(
     }
     let max_iterations = options.max_iterations - warm.iterations;
     let cold = cast(body, ray, &RayCastOptions { warm_start: None, max_iterations, ..*options }, observer);
-    Cast { iterations: warm.iterations + cold.iterations, ..cold }
+    ObstacleCast { iterations: warm.iterations + cold.iterations, ..cold }
 }
 
 /// The cast by all searches, or by Algorithm 3 alone.
@@ -94,7 +95,7 @@ fn cast_by<V: Vector, const ALL: bool>(
     ray: CastRay<V>,
     options: &RayCastOptions<V>,
     observer: &mut Observer<'_, V>,
-) -> Cast<V> {
+) -> ObstacleCast<V> {
     let mut bracket = Bracket::new(body, ray, options, observer);
     let found = match bracket.enter_ball() {
         Ok(()) if bracket.error < V::Scalar::infinity() => search::<V, ALL>(&mut bracket),
@@ -153,7 +154,7 @@ pub(crate) enum Stop<V> {
 }
 
 /// What [`cast`] found; λ in units of the ray's direction.
-pub(crate) struct Cast<V: Vector> {
+pub(crate) struct ObstacleCast<V: Vector> {
     pub(crate) outcome: Outcome<CastHit<V>, V>,
     pub(crate) lower: V::Scalar,
     pub(crate) upper: V::Scalar,
@@ -177,7 +178,7 @@ pub(crate) struct CastHit<V: Vector> {
 
 /// The outcome and its bounds.
 #[inline(always)]
-fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, Stop<V>>) -> Cast<V> {
+fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, Stop<V>>) -> ObstacleCast<V> {
     let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
     let ray = bracket.ray;
     let (outcome, (lower, upper), status) = match found {
@@ -208,5 +209,5 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
     };
     let is_open = matches!(outcome, Outcome::Hit(_)) && bracket.is_worth_another_look();
     let (iterations, scale) = (bracket.iterations(), bracket.scale);
-    Cast { outcome, lower, upper, status, iterations, scale, is_open }
+    ObstacleCast { outcome, lower, upper, status, iterations, scale, is_open }
 }

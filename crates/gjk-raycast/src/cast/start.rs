@@ -1,15 +1,15 @@
 //! Where a cast begins in contact, or within a few errors of it: whether that is a hit.
 //!
 //! What a cast knows of its start is known to the errors of the largest number in it. Looked at [once
-//! more](crate::separation::near_contact_of()), a source may turn out to be apart from the target: then a ray that leaves or
-//! slides by misses, and one that approaches hits a little later.
+//! more](crate::separation::near_contact_of()), a source may turn out to be apart from the target: then a ray that
+//! leaves or slides by misses, and one that approaches hits a little later.
 
 use convex_support::numerics::bound::{raised, roundings};
 use convex_support::numerics::twofold::dot_minus;
 use convex_support::{Point, Posed, Rounded, Scalar, Vector};
 use num_traits::Float;
 
-use super::{Cast, CastHit};
+use super::{CastHit, ObstacleCast};
 use crate::body::PointPair;
 use crate::gjk::Frame;
 use crate::separation::{FromContact, NearContact, look_after, near_contact_of};
@@ -17,7 +17,7 @@ use crate::shape::{Shape, WithoutLines};
 use crate::{Miss, Outcome, RayCastOptions, Status};
 
 /// What a ray is of, for a second look at it.
-pub(crate) struct Approach<'s, V: Vector> {
+pub(crate) struct RayBodies<'s, V: Vector> {
     /// The target, which is swept by a ball, its skin.
     pub(crate) a: Shape<'s, V>,
     pub(crate) skin: V::Scalar,
@@ -35,22 +35,26 @@ pub(crate) enum RayOf<'s, V: Vector> {
 /// Decides about a hit that may be at the source, or elsewhere and open, or about a search that stalled before it left
 /// the source.
 #[inline(always)]
-pub(crate) fn settle_start<V: Vector>(cast: &mut Cast<V>, approach: Approach<'_, V>, options: &RayCastOptions<V>) {
+pub(crate) fn settle_start<V: Vector>(
+    cast: &mut ObstacleCast<V>,
+    bodies: RayBodies<'_, V>,
+    options: &RayCastOptions<V>,
+) {
     if (cast.is_open || cast.is_to_be_settled())
         && cast.iterations < options.max_iterations
         && let Some(extra) = options.extra.get()
     {
-        (extra.settle)(cast, approach, options);
+        (extra.settle)(cast, bodies, options);
     }
 }
 
-pub(super) type SettleFn<V> = fn(&mut Cast<V>, Approach<'_, V>, &RayCastOptions<V>);
+pub(super) type SettleFn<V> = fn(&mut ObstacleCast<V>, RayBodies<'_, V>, &RayCastOptions<V>);
 
 /// The second look at a cast whose hit may be at the source, or elsewhere and open.
 #[cold]
 #[inline(never)]
-pub(super) fn settle<V: Vector>(cast: &mut Cast<V>, approach: Approach<'_, V>, options: &RayCastOptions<V>) {
-    let Approach { a, skin, b, direction } = approach;
+pub(super) fn settle<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodies<'_, V>, options: &RayCastOptions<V>) {
+    let RayBodies { a, skin, b, direction } = bodies;
     let Ok(a) = Rounded::new(a, skin) else { return };
     let (point, source);
     let b: Shape<'_, V> = match b {
@@ -76,7 +80,7 @@ pub(super) fn settle<V: Vector>(cast: &mut Cast<V>, approach: Approach<'_, V>, o
 
 /// Decides by what is known of the bodies where the cast begins.
 fn settle_at_start<V: Vector>(
-    cast: &mut Cast<V>,
+    cast: &mut ObstacleCast<V>,
     [a, b]: [Shape<'_, V>; 2],
     direction: V,
     max_lambda: V::Scalar,
@@ -273,9 +277,9 @@ fn entry<V: Vector>(
     best
 }
 
-/// The λ of a hit away from the source, at the latest, by what is known of the bodies there, where that is less than the
-/// slope at which the ray meets one plane may tell: they are known to so large an error that the next edge may be within
-/// it.
+/// The λ of a hit away from the source, at the latest, by what is known of the bodies there, where that is less than
+/// the slope at which the ray meets one plane may tell: they are known to so large an error that the next edge may be
+/// within it.
 fn latest_after_hit<V: Vector>(
     [a, b]: [Shape<'_, V>; 2],
     direction: V,
@@ -295,7 +299,7 @@ fn latest_after_hit<V: Vector>(
     Some(latest + roundings(4.0, latest))
 }
 
-impl<V: Vector> Cast<V> {
+impl<V: Vector> ObstacleCast<V> {
     /// Whether it hits at the source, or stalled there, and is not known to begin inside.
     #[inline(always)]
     fn is_to_be_settled(&self) -> bool {

@@ -25,9 +25,9 @@ const LARGEST_REACH: f64 = 0.03;
 /// still has [one-sided derivatives](Self::rate). It is found from an answer and the shapes that were asked about, by
 /// [`SignedDistance::closest_features`](crate::SignedDistance::closest_features) and the same methods of other answers.
 ///
-/// Faces and edges are found by [`SupportMap::core_support_feature`](convex_support::SupportMap::core_support_feature). A shape that does not implement it, such as a sum
-/// or a hull, is taken to be smooth. Of a face with more than 16 corners only every second, third, … is
-/// [known](Self::are_complete).
+/// Faces and edges are found by [`SupportMap::core_support_feature`](convex_support::SupportMap::core_support_feature).
+/// A shape that does not implement it, such as a sum or a hull, is taken to be smooth. Of a face with more than 16
+/// corners only every second, third, … is [known](Self::are_complete).
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct ClosestFeatures<V: Vector> {

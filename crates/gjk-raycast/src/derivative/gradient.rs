@@ -207,8 +207,9 @@ pub struct RigidMotionGradient<V: Vector> {
 
 impl<V: Vector> Impact<V> {
     /// The derivatives of the time of first contact, for the motions of the cast that it is the answer of. `None` where
-    /// the bodies overlap at the start, since the time is then 0, or touch and do not approach one another, since it then
-    /// jumps. The motions of a [`linear_cast`](crate::linear_cast) are its [translations](crate::Motion::translations).
+    /// the bodies overlap at the start, since the time is then 0, or touch and do not approach one another, since it
+    /// then jumps. The motions of a [`linear_cast`](crate::linear_cast) are its
+    /// [translations](crate::Motion::translations).
     ///
     /// With `n` the normal at the time `t`, `p` the point of contact and `w` the velocity there of `a` as seen from
     /// `b`, a displacement `δ` of `a` at that time changes it by `−n·δ/(n·w)`. A displacement of the start pose is
@@ -290,8 +291,8 @@ fn at_start<V: Vector>(
     MotionGradient::force(turned_back, start_of(&displacement, force.point))
 }
 
-/// Where the point was at the start that a displacement takes to `x`. With `P` the pivot and `s` its shift, `x = P + s +
-/// R·(x₀ − P)`, so that a change of the start pose is turned: `δx = R·δx₀`.
+/// Where the point was at the start that a displacement takes to `x`. With `P` the pivot and `s` its shift, `x = P + s
+/// + R·(x₀ − P)`, so that a change of the start pose is turned: `δx = R·δx₀`.
 pub(super) fn start_of<V: Vector>(displacement: &Displacement<V>, x: V) -> V {
     displacement.pivot + displacement.rotation().transpose_mul(x - displacement.pivot - displacement.shift)
 }

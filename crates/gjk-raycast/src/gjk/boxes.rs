@@ -16,9 +16,10 @@
 //! difference reaches less far by `ρ` at most; its facets are those of the other edges, and they are seen, with `fₖ` as
 //! it is, to another `ρ`. Gaps of `−(e + 2ρ)·|n|` along all those are proof enough.
 //!
-//! *Why this is not the [depth](crate::signed_distance) of boxes.* That makes unit vectors of all axes, bounds what each
-//! facet is wrong by, and finds the points at its end. Of the same pairs, half of which overlap, it takes 3.4 times the
-//! instructions (`signed_distance/cuboid-cuboid` and `intersect/cuboid-cuboid` of `benches/instructions.txt`).
+//! *Why this is not the [depth](crate::signed_distance) of boxes.* That makes unit vectors of all axes, bounds what
+//! each facet is wrong by, and finds the points at its end. Of the same pairs, half of which overlap, it takes 3.4
+//! times the instructions (`signed_distance/cuboid-cuboid` and `intersect/cuboid-cuboid` of
+//! `benches/instructions.txt`).
 
 use convex_support::{CoreKind, Parallelotope, Scalar, Vector};
 use num_traits::Float;

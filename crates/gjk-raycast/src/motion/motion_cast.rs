@@ -110,7 +110,8 @@ new_by_default!(MotionCastOptions);
 /// The motions are [`RigidMotion`]s, [`ChainMotion`](crate::ChainMotion)s or any other [`Trajectory`]; a body at rest
 /// has the motion `RigidMotion::default()`. Up to `lower` the bodies are proved to be apart at all times, not only at
 /// those looked at; by `upper` they have met. A miss is proved for the whole motion. Where the bodies graze one
-/// another, so that rounding decides, the answer is [`Outcome::Undecided`](crate::Outcome::Undecided), and `lower` is the time of the graze.
+/// another, so that rounding decides, the answer is [`Outcome::Undecided`](crate::Outcome::Undecided), and `lower` is
+/// the time of the graze.
 ///
 /// A start in contact is a hit at time 0, whatever the motion. With
 /// [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper) it is none, but that the bodies get deeper than they

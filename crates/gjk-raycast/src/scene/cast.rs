@@ -103,8 +103,8 @@ impl<S: SupportMap> Among<'_, S> {
         self.first(&swept, options.max_time, |body| Ok(body.linear_cast(shape, motion, options)?.into()))
     }
 
-    /// All bodies that the moving shape meets, in the order of the time and then of their indices, into `hits`, which is
-    /// emptied first: the hits of [`linear_cast`](crate::linear_cast) against each body, as if it were alone.
+    /// All bodies that the moving shape meets, in the order of the time and then of their indices, into `hits`, which
+    /// is emptied first: the hits of [`linear_cast`](crate::linear_cast) against each body, as if it were alone.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, glam::DVec2};

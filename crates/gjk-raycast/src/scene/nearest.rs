@@ -20,8 +20,8 @@ impl<S: SupportMap> Among<'_, S> {
         shape: &A,
         options: DistanceOptions<S::Vector>,
     ) -> SceneDistance<S::Vector> {
-        // What is certainly farther than the nearest need not be known closely; and a body is as far as its box at least,
-        // so that, as for casts, it counts from its distance or from where its box begins, whichever is farther.
+        // What is certainly farther than the nearest need not be known closely; and a body is as far as its box at
+        // least, so that, as for casts, it counts from its distance or from where its box begins, whichever is farther.
         let (mut nearest, mut limit, mut lower) = (None, (options.limit, usize::MAX), options.limit);
         let Ok(work) = self.in_order(&distance_of(shape), options.limit, |index, from, body| {
             let distance = body.distance_from(shape, options.with_limit(limit.0));

@@ -22,8 +22,8 @@ impl<S: SupportMap> Among<'_, S> {
         self.find_pairs(within, pairs, &|pair, a, b| between(pair, a, b, options.with_limit(within)))
     }
 
-    /// All pairs of one of these bodies, `a`, and any of another scene, `b`, that are no farther than `within` from each
-    /// other.
+    /// All pairs of one of these bodies, `a`, and any of another scene, `b`, that are no farther than `within` from
+    /// each other.
     pub fn pairs_between<T: SupportMap<Vector = S::Vector>>(
         &self,
         other: &Scene<T>,

@@ -10,9 +10,9 @@ use super::result::{BodyContact, PairContact};
 use crate::{Contact, SignedDistanceOptions, signed_distance};
 
 impl<S: SupportMap> Scene<S> {
-    /// Leaves out of the [contacts of a shape](crate::Among::contacts_of) those at seams, and says how many these were: where a
-    /// floor is made of boxes or triangles, a body that slides over it meets the edges and sides at which they lie on
-    /// one another, and would be stopped or thrown up by them.
+    /// Leaves out of the [contacts of a shape](crate::Among::contacts_of) those at seams, and says how many these were:
+    /// where a floor is made of boxes or triangles, a body that slides over it meets the edges and sides at which they
+    /// lie on one another, and would be stopped or thrown up by them.
     ///
     /// A point of a contact is at a seam if it is a point of another body too, which reaches beyond it along the
     /// normal: no surface of the two together faces that way. If all points of a contact are at seams with bodies whose
@@ -42,8 +42,9 @@ impl<S: SupportMap> Scene<S> {
         })
     }
 
-    /// The same of the contacts of [all pairs](crate::Among::contacts_within), of which either body may be one of the pieces:
-    /// one is left out if all of its points are at seams of one of its bodies with others that touch the other one.
+    /// The same of the contacts of [all pairs](crate::Among::contacts_within), of which either body may be one of the
+    /// pieces: one is left out if all of its points are at seams of one of its bodies with others that touch the other
+    /// one.
     pub fn leave_out_seams_of_pairs(&self, contacts: &mut Vec<PairContact<S::Vector>>) -> usize {
         leave_out(contacts, |contacts, &PairContact { a, b, contact }| {
             [(a, b, contact), (b, a, contact.reversed())].into_iter().any(|(moving, piece, contact)| {
@@ -56,8 +57,8 @@ impl<S: SupportMap> Scene<S> {
         })
     }
 
-    /// The same of the [contacts of this scene and another](crate::Among::contacts_between), of which either may be made of
-    /// pieces.
+    /// The same of the [contacts of this scene and another](crate::Among::contacts_between), of which either may be
+    /// made of pieces.
     pub fn leave_out_seams_between<T: SupportMap<Vector = S::Vector>>(
         &self,
         other: &Scene<T>,

@@ -155,9 +155,9 @@ impl<V: Vector> Uncertainty<V> {
     }
 }
 
-/// How far points of the difference of two cores of the given size may be from those they stand for, as a length, in the
-/// world's unit: no less than any [`Uncertainty`], since no sum of products of coordinates is more than the product of
-/// the lengths, and the offset of the origins loses half an ε of its own.
+/// How far points of the difference of two cores of the given size may be from those they stand for, as a length, in
+/// the world's unit: no less than any [`Uncertainty`], since no sum of products of coordinates is more than the product
+/// of the lengths, and the offset of the origins loses half an ε of its own.
 #[inline(always)]
 pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
     pair: &Pair<'_, T>,
@@ -237,7 +237,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         !are_deep && is_near_contact(state, &self.frame)
     }
 
-    /// Looks at bodies near contact once more, perhaps after a search. Whether there is no more to know than that tells.
+    /// Looks at bodies near contact once more, perhaps after a search. Whether there is no more to know than that
+    /// tells.
     pub(super) fn look_near(&mut self, wanted: &Wanted<V>, state: Option<&Gjk<V>>) -> bool {
         if wanted.of_overlap == OfOverlap::RoughDepth {
             return false;
@@ -427,8 +428,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         wanted.options.limit * self.frame.per_unit + self.frame.radius
     }
 
-    /// GJK, from the closest points where they are known, until what is wanted of the distance of the cores is known, or
-    /// they meet to rounding: of those who ask for the depth even where the radii overlap. The shortest vector is
+    /// GJK, from the closest points where they are known, until what is wanted of the distance of the cores is known,
+    /// or they meet to rounding: of those who ask for the depth even where the radii overlap. The shortest vector is
     /// measured, unless it is no vector, since zero is within a simplex of full dimension.
     #[inline]
     pub(super) fn approach(

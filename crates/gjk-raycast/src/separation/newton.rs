@@ -103,7 +103,8 @@ impl<V: Vector> Piece<V> {
     /// A step `δ` across `n` and back to unit length changes the support value `h` to
     ///
     /// ```text
-    /// h((n + δ)/|n + δ|) = (h + p·δ + δ·Hδ/2)/√(1 + δ²) ≈ h + p·δ + δ·(H − h)·δ/2,   least where   (H − h)·δ = −p across n,
+    /// h((n + δ)/|n + δ|) = (h + p·δ + δ·Hδ/2)/√(1 + δ²) ≈ h + p·δ + δ·(H − h)·δ/2,   least where   (H − h)·δ = −p
+    /// across n,
     /// ```
     ///
     /// if `H − h` is positive definite. It is so near a minimum on a smooth boundary, whose radii of curvature are the

@@ -30,7 +30,7 @@ pub(crate) enum Depth {
 }
 
 /// The iterate of the program.
-struct Iterate {
+struct ChebyshevIterate {
     /// (z, t).
     w: Vec<f64>,
     /// Multipliers.
@@ -68,7 +68,7 @@ fn depth_in_unit(rows: &Rows) -> Depth {
     let mut w = vec![0.0; n + 1];
     w[n] = least - scale;
     let c = rows.s.iter().map(|b| b - w[n]).collect();
-    let mut at = Iterate { w, y: vec![1.0 / m as f64; m], c };
+    let mut at = ChebyshevIterate { w, y: vec![1.0 / m as f64; m], c };
     for _ in 0..100 {
         let t = at.w[n];
         let mu = dot(&at.c, &at.y) / m as f64;
@@ -94,7 +94,7 @@ fn depth_in_unit(rows: &Rows) -> Depth {
     if t > thin { Depth::Inside(z) } else { Depth::Thin { at: z, relaxation: 2.0 * thin.max(-t) } }
 }
 
-impl Iterate {
+impl ChebyshevIterate {
     /// |Gᵀy − e|.
     fn dual_residual(&self, rows: &Rows) -> f64 {
         let mut residual = vec![0.0; self.w.len()];

@@ -102,7 +102,7 @@ pub(crate) fn maximize<D: Dimension>(
     options: InscribedOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Maximum, InscribedError> {
-    let mut at = Iterate::start(dim, p).ok_or(InscribedError::OutOfRange)?;
+    let mut at = PrimalDualIterate::start(dim, p).ok_or(InscribedError::OutOfRange)?;
     let m = at.y.len() as f64;
     // Σyᵢhᵢ = N at the solution.
     let mut mu = dim.get() as f64 / m;
@@ -136,7 +136,7 @@ pub(crate) fn maximize<D: Dimension>(
 }
 
 /// The unknowns (B, d, y) of the iteration, and room for a step.
-struct Iterate<'a, D> {
+struct PrimalDualIterate<'a, D> {
     dim: D,
     p: &'a [f64],
     point: Point,
@@ -146,7 +146,7 @@ struct Iterate<'a, D> {
     direction: Direction,
 }
 
-impl<'a, D: Dimension> Iterate<'a, D> {
+impl<'a, D: Dimension> PrimalDualIterate<'a, D> {
     /// A ball about the origin half as large as fits; `None` where that is out of the range of `f64`.
     fn start(dim: D, p: &'a [f64]) -> Option<Self> {
         let n = dim.get();

@@ -100,8 +100,8 @@ pub(super) fn smooth<V: Vector>(
 /// rounding of the best plane: sooner by a support point than a point of the body is on the line.
 ///
 /// With `c = p − ρ·n` the ball's centre, `n` of unit length, the line enters it at `t_c − √(ρ² − u_c² − v_c²)`: behind
-/// the plane by the square of the distance from `p`. The normal and both shapes' points are moved to where Newton's step
-/// leads, `δ` with `H·δ = −(u, v)`, by what each has of the core's Hessian.
+/// the plane by the square of the distance from `p`. The normal and both shapes' points are moved to where Newton's
+/// step leads, `δ` with `H·δ = −(u, v)`, by what each has of the core's Hessian.
 #[inline(never)]
 fn in_ball<V: Vector>(
     bracket: &mut Bracket<'_, V>,

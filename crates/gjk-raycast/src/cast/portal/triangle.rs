@@ -31,8 +31,8 @@ const NEAR: f64 = 0.01;
 /// Exchanges of a point that bring the portal no nearer.
 pub(super) const MAX_EXCHANGES: usize = 12;
 
-/// Closes the bracket, beginning with a plane across `first`, which may be known to support the body at `seen`, and with
-/// planes tilted by `tilt` until a portal is found.
+/// Closes the bracket, beginning with a plane across `first`, which may be known to support the body at `seen`, and
+/// with planes tilted by `tilt` until a portal is found.
 #[inline(always)]
 pub(super) fn triangle<V: Vector>(
     bracket: &mut Bracket<'_, V>,
@@ -108,8 +108,8 @@ impl<V: Vector> Planes<'_, V> {
         Ok(p)
     }
 
-    /// The support point of a plane that is tilted towards `toward`; or, if that is not on that side of the line, of one
-    /// that is tilted more, and in the end the one along `toward` itself.
+    /// The support point of a plane that is tilted towards `toward`; or, if that is not on that side of the line, of
+    /// one that is tilted more, and in the end the one along `toward` itself.
     #[inline(always)]
     fn support_toward(
         &mut self,
