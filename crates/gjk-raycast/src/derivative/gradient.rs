@@ -291,8 +291,8 @@ fn at_start<V: Vector>(
     MotionGradient::force(turned_back, start_of(&displacement, force.point))
 }
 
-/// Where the point was at the start that a displacement takes to `x`. With `P` the pivot and `s` its shift, `x = P + s
-/// + R·(x₀ − P)`, so that a change of the start pose is turned: `δx = R·δx₀`.
+/// Where the point was at the start that a displacement takes to `x`. With `P` the pivot and `s` its shift,
+/// `x = P + s + R·(x₀ − P)`, so that a change of the start pose is turned: `δx = R·δx₀`.
 pub(super) fn start_of<V: Vector>(displacement: &Displacement<V>, x: V) -> V {
     displacement.pivot + displacement.rotation().transpose_mul(x - displacement.pivot - displacement.shift)
 }
