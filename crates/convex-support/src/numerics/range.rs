@@ -38,20 +38,23 @@ pub fn power_of_two_below<S: Scalar>(value: S) -> S {
     power_of_two::<S>(half) / S::EPSILON * power_of_two(i32::from(exponent) - half)
 }
 
-/// `v` divided by a power of two near its largest magnitude, and that power as two factors; `None` for zero and NaN.
+/// What is rarely asked of a vector, such as of one whose square over- or underflows; once in a program for each
+/// question.
 ///
 /// The coordinates are passed on one by one: a vector of `f64` would go through memory, and since compilers put it
 /// there before they branch, written in other pieces than it is read in, those who never come here would wait for it.
 #[inline]
-pub fn scaled<V: Vector>(v: V) -> Option<(V, [V::Scalar; 2])> {
-    let z = if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO };
-    scaled_coordinates(v.get(0), v.get(1), z)
+pub fn rarely<V: Vector, R>(v: V, question: impl FnOnce(V) -> R) -> R {
+    #[cold]
+    #[inline(never)]
+    fn asked<V: Vector, R>(x: V::Scalar, y: V::Scalar, z: V::Scalar, question: impl FnOnce(V) -> R) -> R {
+        question(V::from_fn(|i| [x, y, z][i]))
+    }
+    asked(v.get(0), v.get(1), if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO }, question)
 }
 
-#[cold]
-#[inline(never)]
-fn scaled_coordinates<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<(V, [V::Scalar; 2])> {
-    let v = V::from_fn(|i| [x, y, z][i]);
+/// `v` divided by a power of two near its largest magnitude, and that power as two factors; `None` for zero and NaN.
+pub fn scaled<V: Vector>(v: V) -> Option<(V, [V::Scalar; 2])> {
     let largest = v.abs().max_element();
     // As across the axis of a cylinder, along its axis.
     if largest <= V::Scalar::ZERO {

@@ -10,7 +10,7 @@ use num_traits::Float as _;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use crate::numerics::range::{is_comfortable, scaled};
+use crate::numerics::range::{is_comfortable, rarely, scaled};
 use crate::sealed::Sealed;
 use crate::{AngularVelocity, Rotation, Scalar};
 
@@ -118,7 +118,7 @@ pub trait Vector:
         if is_comfortable(squared) {
             squared.sqrt()
         } else {
-            scaled(self).map_or(squared, |(v, [s, t])| v.length() * s * t)
+            rarely(self, |v| scaled(v).map_or(v.length_squared(), |(v, [s, t])| v.length() * s * t))
         }
     }
 
@@ -138,7 +138,7 @@ pub trait Vector:
         if is_comfortable(squared) {
             Some(self / squared.sqrt())
         } else {
-            scaled(self).filter(|(v, _)| v.is_finite()).map(|(v, _)| v / v.length())
+            rarely(self, |v| scaled(v).filter(|(v, _)| v.is_finite()).map(|(v, _)| v / v.length()))
         }
     }
 }

@@ -21,7 +21,7 @@ use lanes::Lanes;
 use super::points::{middle, rounding_of_points};
 use crate::error::{InvalidShape, measurable};
 use crate::numerics::bound::roundings_of;
-use crate::numerics::range::{is_comfortable, power_of_two_below, scaled};
+use crate::numerics::range::{is_comfortable, power_of_two_below, rarely, scaled};
 use crate::{Core, CoreKind, Feature, Hint, Rounding, Scalar, SupportMap, Vector};
 
 #[cfg(feature = "hull")]
@@ -121,7 +121,7 @@ impl<V: Vector> Polytope<V> {
         // Added from the last to the first, so that the compiler reads x and y as one piece, which is how a caller
         // behind `dyn` writes them; y and z would be a piece of two writes, which the processor waits for.
         if !is_comfortable(dz * dz + dy * dy + dx * dx)
-            && let Some((multiple, _)) = scaled(direction)
+            && let Some((multiple, _)) = rarely(direction, scaled)
         {
             (dx, dy, dz) = coordinates(multiple);
         }
