@@ -75,17 +75,18 @@ pub(super) fn rounded<V: Vector>(
         if bracket.is_point {
             best.set(high, alpha, &p);
         }
-        if best.alpha.is_within(high - best.tau, tolerance) {
-            return best.close(bracket, frame, kept.points(), &at.weights, at.tau);
+        if !best.alpha.is_within(high - best.tau, tolerance) {
+            if frame.is_curved(bracket.body, frame.normal(alpha.plane())) {
+                return Err(Stop::InDoubt);
+            }
+            let next = frame.support_of(bracket, alpha.plane())?;
+            let is_better = best.improve(bracket, frame, alpha, &next, radius)?;
+            if !(is_better && high - best.tau <= tolerance * alpha.length()) {
+                kept.push(next);
+                continue;
+            }
         }
-        if frame.is_curved(bracket.body, frame.normal(alpha.plane())) {
-            return Err(Stop::InDoubt);
-        }
-        let next = frame.support_of(bracket, alpha.plane())?;
-        if best.improve(bracket, frame, alpha, &next, radius)? && high - best.tau <= tolerance * alpha.length() {
-            return best.close(bracket, frame, kept.points(), &at.weights, at.tau);
-        }
-        kept.push(next);
+        return best.close(bracket, frame, kept.points(), &at.weights, at.tau);
     }
     Err(Stop::InDoubt)
 }

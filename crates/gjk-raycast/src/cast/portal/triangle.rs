@@ -58,10 +58,8 @@ pub(super) fn triangle<V: Vector>(
     }
     let mut planes = Planes { frame, alpha: best.alpha, best, tilt };
     let mut q = planes.opposite(bracket, &p)?;
-    if tilt < Scalar::ONE {
-        if let Some(found) = mixed(frame, &p, &q) {
-            return planes.shrink(bracket, found);
-        }
+    let mut portal = if tilt < Scalar::ONE { mixed(frame, &p, &q) } else { None };
+    if portal.is_none() {
         // Pieces known from so near tell where to look next before the line is enclosed.
         if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.body.is_curved() {
             match sqp(bracket, frame, Portal::unknown([p, p, q]), planes.best, tilt) {
@@ -69,8 +67,9 @@ pub(super) fn triangle<V: Vector>(
                 found => return found,
             }
         }
+        portal = planes.enclose(bracket, &mut p, &mut q)?;
     }
-    match planes.enclose(bracket, &mut p, &mut q)? {
+    match portal {
         Some(found) => planes.shrink(bracket, found),
         // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a
         // smooth piece may be found that it runs through.
@@ -173,8 +172,9 @@ impl<V: Vector> Planes<'_, V> {
         Ok(None)
     }
 
-    /// Brings the portal nearer until the bracket closes between the best plane, at its own cosine, and the portal.
-    #[inline(always)]
+    /// Brings the portal nearer until the bracket closes between the best plane, at its own cosine, and the portal. On
+    /// its own, since together with the search for a portal it runs out of registers.
+    #[inline(never)]
     fn shrink(&mut self, bracket: &mut Bracket<'_, V>, mut portal: Triangle<V>) -> Result<RayContact<V>, Stop<V>> {
         let tolerance = bracket.tolerance();
         bracket.around = Some(portal.corners.map(|p| p.point));
@@ -203,22 +203,20 @@ impl<V: Vector> Planes<'_, V> {
             }
             let closed = |best: &BestPlane<V>, alpha: Alpha<V::Scalar>| alpha.is_within(high - best.tau, tolerance);
             let weights = portal.weights.map(|w| w * inverse);
-            if closed(&self.best, self.best.alpha) {
-                let found = self.best.close(bracket, self.frame, &portal.corners, &weights, high)?;
-                portal.bound_entry(bracket, plane, high);
-                return Ok(found);
+            if !closed(&self.best, self.best.alpha) {
+                if bracket.body.is_curved() && self.frame.is_curved(bracket.body, self.frame.normal(plane)) {
+                    return sqp(bracket, self.frame, portal.anticlockwise(weights, high), self.best, self.tilt);
+                }
+                let before = self.best.tau;
+                let r = self.support(bracket, plane)?;
+                if !(self.best.tau > before && closed(&self.best, self.alpha)) {
+                    portal.exchange(r)?;
+                    continue;
+                }
             }
-            if bracket.body.is_curved() && self.frame.is_curved(bracket.body, self.frame.normal(plane)) {
-                return sqp(bracket, self.frame, portal.anticlockwise(weights, high), self.best, self.tilt);
-            }
-            let before = self.best.tau;
-            let r = self.support(bracket, plane)?;
-            if self.best.tau > before && closed(&self.best, self.alpha) {
-                let found = self.best.close(bracket, self.frame, &portal.corners, &weights, high)?;
-                portal.bound_entry(bracket, plane, high);
-                return Ok(found);
-            }
-            portal.exchange(r)?;
+            let found = self.best.close(bracket, self.frame, &portal.corners, &weights, high)?;
+            portal.bound_entry(bracket, plane, high);
+            return Ok(found);
         }
     }
 }
