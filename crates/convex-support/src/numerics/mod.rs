@@ -4,6 +4,7 @@ pub mod bound;
 pub mod bounded;
 pub mod elementary;
 pub mod jacobi;
+pub mod orientation;
 pub mod range;
 pub mod twofold;
 pub mod widest;

@@ -1,8 +1,7 @@
 //! Which of a set of points are the vertices of its convex hull, and which facets they span, exactly.
 //!
-//! Quickhull (Barber, Dobkin, Huhdanpaa, *The Quickhull algorithm for convex hulls*, 1996) with exact predicates
-//! (Shewchuk, *Adaptive precision floating-point arithmetic and fast robust geometric predicates*, 1997, by the crate
-//! `robust`). Quickhull with rounded predicates has to merge facets that come out concave, and a mesh from a CAD file,
+//! Quickhull (Barber, Dobkin, Huhdanpaa, *The Quickhull algorithm for convex hulls*, 1996) with
+//! [exact predicates](crate::numerics::orientation). Quickhull with rounded predicates has to merge facets that come out concave, and a mesh from a CAD file,
 //! with its thousands of coplanar and repeated points, is where that goes wrong. With exact ones there is nothing to
 //! repair: a point on a facet's plane does not see the facet, so that coplanar points become coplanar facets, and a
 //! duplicate sees none.
@@ -10,7 +9,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use robust::{Coord, Coord3D, orient2d, orient3d};
+use crate::numerics::orientation::{six_volumes, twice_area};
 
 /// The hull of points, by its dimension; all numbers are indices of points.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,24 +37,19 @@ pub(crate) fn convex_hull(points: &[[f64; 3]]) -> Option<ConvexHull> {
     }
 }
 
-fn coord(p: [f64; 3]) -> Coord3D<f64> {
-    Coord3D { x: p[0], y: p[1], z: p[2] }
-}
-
 /// Twice the signed area of three points as seen along axis `drop`; the sign is exact.
 fn area(points: &[[f64; 3]], [a, b, c]: [u32; 3], drop: usize) -> f64 {
     let flat = |i: u32| {
         let p = points[i as usize];
-        Coord { x: p[(drop + 1) % 3], y: p[(drop + 2) % 3] }
+        [p[(drop + 1) % 3], p[(drop + 2) % 3]]
     };
-    orient2d(flat(a), flat(b), flat(c))
+    twice_area([a, b, c].map(flat))
 }
 
 /// Six times the volume between a triangle and a point, positive where the triangle appears counterclockwise from the
 /// point; the sign is exact.
 fn volume(points: &[[f64; 3]], [a, b, c]: [u32; 3], d: u32) -> f64 {
-    let [a, b, c, d] = [a, b, c, d].map(|i| coord(points[i as usize]));
-    -orient3d(a, b, c, d)
+    six_volumes([a, b, c, d].map(|i| points[i as usize]))
 }
 
 /// The index with the largest value; `None` where no value is greater than zero.
