@@ -248,6 +248,8 @@ pub struct SpinInSpace<V> {
     space: PhantomData<V>,
 }
 
+impl<V: Vector> Sealed for SpinInSpace<V> {}
+
 impl<V> SpinInSpace<V> {
     fn new(angular_velocity: DVec3) -> Self {
         if angular_velocity == DVec3::ZERO {

@@ -7,4 +7,3 @@ impl Sealed for f32 {}
 impl Sealed for f64 {}
 impl Sealed for glam::Quat {}
 impl Sealed for glam::DQuat {}
-impl<V: crate::Vector> Sealed for crate::angular_velocity::SpinInSpace<V> {}

@@ -2,7 +2,6 @@
 
 use num_traits::Float as _;
 
-use super::lanes::{LINES, Lane};
 use super::{CertainCrossing, Crossed, Crossing, NearLine, comfortable, rebased};
 use crate::shapes::{PLANES, Planes, facet};
 use crate::{Faceted, Scalar, Vector};
@@ -80,10 +79,10 @@ fn coordinates<V: Vector>(v: V) -> [V::Scalar; 3] {
 
 /// The stretch of a line behind all planes, and the indices of those it enters and leaves by.
 pub(super) struct Clipped<S> {
-    entry: S,
-    exit: S,
-    into: usize,
-    out_of: usize,
+    pub(super) entry: S,
+    pub(super) exit: S,
+    pub(super) into: usize,
+    pub(super) out_of: usize,
 }
 
 /// Clips the line through a point along a direction by planes.
@@ -118,76 +117,6 @@ fn clip<S: Scalar>(planes: &[Planes<S>], [x, y, z]: [S; 3], [dx, dy, dz]: [S; 3]
     let (last, first) = (last(0), last(PLANES));
     let index = |place: S| place.as_f64() as usize;
     Clipped { entry: entries[last], exit: -entries[first], into: index(into[last]), out_of: index(into[first]) }
-}
-
-/// [`Clipped`] of many lines; the exits are turned around.
-pub(super) struct ClippedLines<S> {
-    entries: Lane<S>,
-    exits: Lane<S>,
-    into: Lane<S>,
-    out_of: Lane<S>,
-}
-
-impl<S: Scalar> ClippedLines<S> {
-    #[inline(always)]
-    pub(super) fn get(&self, line: usize) -> Clipped<S> {
-        let [into, out_of] = [self.into[line], self.out_of[line]].map(|place| place.as_f64() as usize);
-        Clipped { entry: self.entries[line], exit: -self.exits[line], into, out_of }
-    }
-}
-
-/// [`clip`] of many lines, each at one plane after the other; of one line, planes are side by side. Of planes that are
-/// entered at the same parameter it finds the same one: the first of the first row.
-#[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
-#[inline(always)]
-pub(super) fn clip_lines<S: Scalar>(
-    planes: &[Planes<S>],
-    [x, y, z]: &[Lane<S>; 3],
-    [dx, dy, dz]: &[Lane<S>; 3],
-) -> ClippedLines<S> {
-    let (below, width) = (-S::infinity(), S::from_f64(PLANES as f64));
-    let mut found = ClippedLines {
-        entries: [below; LINES],
-        exits: [below; LINES],
-        into: [S::ZERO; LINES],
-        out_of: [S::ZERO; LINES],
-    };
-    for row in 0..PLANES {
-        let mut here = S::from_f64(row as f64);
-        for [nx, ny, nz, reach] in planes {
-            let [nx, ny, nz, reach] = [nx[row], ny[row], nz[row], reach[row]];
-            for l in 0..LINES {
-                let slope = nx * dx[l] + ny * dy[l] + nz * dz[l] + S::ZERO;
-                let crossed = (reach - (nx * x[l] + ny * y[l] + nz * z[l])) / slope;
-                let entry = if slope < S::ZERO { crossed } else { below };
-                let exit = if slope < S::ZERO { below } else { -crossed };
-                let (enters, leaves) = (entry > found.entries[l], exit > found.exits[l]);
-                found.into[l] = if enters { here } else { found.into[l] };
-                found.entries[l] = if enters { entry } else { found.entries[l] };
-                found.out_of[l] = if leaves { here } else { found.out_of[l] };
-                found.exits[l] = if leaves { exit } else { found.exits[l] };
-            }
-            here += width;
-        }
-    }
-    found
-}
-
-/// [`most_beyond`] of many points, each at one plane after the other.
-#[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
-#[inline(always)]
-pub(super) fn most_beyond_of_all<S: Scalar>(planes: &[Planes<S>], [x, y, z]: &[Lane<S>; 3]) -> Lane<S> {
-    let mut most = [-S::infinity(); LINES];
-    for [nx, ny, nz, reach] in planes {
-        for row in 0..PLANES {
-            let [nx, ny, nz, reach] = [nx[row], ny[row], nz[row], reach[row]];
-            for l in 0..LINES {
-                let beyond = nx * x[l] + ny * y[l] + nz * z[l] - reach;
-                most[l] = if beyond > most[l] { beyond } else { most[l] };
-            }
-        }
-    }
-    most
 }
 
 /// How far a point is beyond the plane that it is farthest beyond, or negative.

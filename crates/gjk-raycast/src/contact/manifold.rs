@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 
 use super::clip::{ClippedCorners, clip};
 use super::outline::{ContactPart, ContactPlane, Outline};
-use super::reduction::{Rank, WORTHWHILE, reduced};
+use super::reduction::{Candidate, Rank, WORTHWHILE, reduced};
 use super::result::MAX_POINTS;
 use super::surface::{MAX_SUPPORT_POINTS, Side, Surface};
 use super::{Contact, ContactPoint};
@@ -145,24 +145,6 @@ impl<S: Scalar> Reach<S> {
         let slack = size * S::from_f64(SLACK);
         let slab = (within - answer.lower).max(S::ZERO) + slack + slack;
         Self { within, slab, near: size * S::from_f64(NEAR), slack }
-    }
-}
-
-/// A point of contact in the plane: where it is, how far both shapes reach there, and the [code](ContactPart::code) of
-/// what it is of each.
-#[derive(Clone, Copy)]
-pub(super) struct Candidate<S> {
-    pub(super) at: Across<S>,
-    pub(super) levels: [S; 2],
-    pub(super) error: S,
-    pub(super) codes: [u32; 2],
-    /// Whether it is that of the closest points, which are known better than places in the plane.
-    pub(super) is_closest: bool,
-}
-
-impl<S: Scalar> Candidate<S> {
-    pub(super) fn gap(&self) -> S {
-        -(self.levels[0] + self.levels[1])
     }
 }
 

@@ -3,7 +3,6 @@
 use convex_support::Scalar;
 use smallvec::SmallVec;
 
-use super::manifold::Candidate;
 use super::result::MAX_POINTS;
 use crate::symmetric::{Across, cross, way};
 
@@ -14,6 +13,24 @@ pub(super) const WORTHWHILE: f64 = 1.0 / 64.0;
 /// Of corners that do as well, those of the least rank are kept: those of the last manifold, and then the least by what
 /// they are of both shapes, which does not jitter.
 pub(super) type Rank = (bool, [u32; 2]);
+
+/// A point of contact in the plane: where it is, how far both shapes reach there, and the [code](ContactPart::code) of
+/// what it is of each.
+#[derive(Clone, Copy)]
+pub(super) struct Candidate<S> {
+    pub(super) at: Across<S>,
+    pub(super) levels: [S; 2],
+    pub(super) error: S,
+    pub(super) codes: [u32; 2],
+    /// Whether it is that of the closest points, which are known better than places in the plane.
+    pub(super) is_closest: bool,
+}
+
+impl<S: Scalar> Candidate<S> {
+    pub(super) fn gap(&self) -> S {
+        -(self.levels[0] + self.levels[1])
+    }
+}
 
 /// The indices of four of the candidates, which are the corners of a convex polygon, that span it well. In the plane
 /// there are no more than two.

@@ -285,7 +285,7 @@ impl<V: Vector> CrossedByLine for Faceted<V> {
     fn certain_crossings(&self, lines: &mut Lines<V::Scalar>) -> bool {
         let Core { origin, extent, error, .. } = self.core();
         if self.uncut < V::Scalar::infinity() {
-            lanes::hull(lines, &self.planes, origin, extent, error + self.uncut);
+            lanes::hull::hull(lines, &self.planes, origin, extent, error + self.uncut);
         }
         self.uncut < V::Scalar::infinity()
     }

@@ -7,20 +7,19 @@
 
 #![allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
 
-use super::certain::BeyondEnd;
 #[cfg(feature = "hull")]
-use super::faceted::{clip_lines, most_beyond_of_all};
+pub(crate) mod hull;
+
+use super::certain::BeyondEnd;
 use super::{CertainCrossing, LineQuery, NearLine, Spine, Turned};
 use crate::numerics::widest::{Loop, widest};
-#[cfg(feature = "hull")]
-use crate::shapes::Planes;
 use crate::{Matrix, Scalar, Vector, compiled_once};
 
 /// How many lines are asked at a time: a multiple of what a vector register holds on every target.
 pub const LINES: usize = 32;
 
 /// A number of each line.
-pub(super) type Lane<S> = [S; LINES];
+type Lane<S> = [S; LINES];
 
 /// Lines, coordinate by coordinate, and what a shape [certainly knows](crate::CrossedByLine::certain_crossings) of
 /// them. While it is asked, it may write over them.
@@ -364,49 +363,5 @@ compiled_once! {
         [lines.base, lines.is_near] = *counted;
         let rotation = <V::Numbers as Vector>::Matrix::from_cols_fn(|j| numbers(rotation.col(j)));
         each::<V::Numbers>(lines, After(rotation));
-    }
-}
-
-#[cfg(feature = "hull")]
-compiled_once! {
-    /// A hull by the planes of its facets as they are seen from a point, known to within an `error`.
-    pub(crate) fn hull<V>(
-        lines: &mut Lines<<V as Vector>::Scalar>,
-        planes: &[Planes<<V as Vector>::Scalar>],
-        origin: V,
-        size: <V as Vector>::Scalar,
-        error: <V as Vector>::Scalar,
-    ) -> () {
-        struct ClippedByHull<'a, V: Vector>(&'a mut Lines<V::Scalar>, &'a [Planes<V::Scalar>], V::Scalar);
-        impl<V: Vector> Loop for ClippedByHull<'_, V> {
-            #[inline(always)]
-            fn run(self) {
-                let Self(lines, planes, size) = self;
-                for line in 0..LINES {
-                    let foot = lines.near::<V>(line, size).at_foot();
-                    (lines.base[line], lines.near_error[line]) = (foot.base, foot.error);
-                    set(&mut lines.near, line, foot.source);
-                }
-                let clipped = clip_lines(planes, &lines.near, &lines.direction);
-                // Where each is to be in the hull if it enters it.
-                let mut inner = [[V::Scalar::ZERO; LINES]; 3];
-                for line in 0..LINES {
-                    let near = lines.near::<V>(line, size);
-                    let (told, latest) = match near.cut(planes, clipped.get(line)) {
-                        Some((known, latest)) => (Told::new(known), latest),
-                        None => (Told::NOTHING, V::Scalar::ZERO),
-                    };
-                    lines.tell(line, told);
-                    set(&mut inner, line, near.source + near.direction * latest);
-                }
-                let most = most_beyond_of_all(planes, &inner);
-                for line in 0..LINES {
-                    let is_known = (lines.known[line] < V::Scalar::ZERO) | (most[line] <= -lines.near_error[line]);
-                    lines.known[line] = if is_known { lines.known[line] } else { V::Scalar::ZERO };
-                }
-            }
-        }
-        approach(lines, numbers(origin), size, error);
-        widest(ClippedByHull::<V::Numbers>(lines, planes, size));
     }
 }
