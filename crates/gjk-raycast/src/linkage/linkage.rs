@@ -11,7 +11,7 @@ use num_traits::Float;
 use super::error::LinkageError;
 use super::frame::{LinkFrame, epsilons};
 use super::joint::{Joint, JointKind, JointStage, Link, Moving};
-use super::link_motion::{LinkMotion, PathEdge, Route};
+use super::link_motion::{PathEdge, Route};
 use super::result::{Met, PathContact};
 use crate::axial;
 
@@ -182,7 +182,7 @@ impl<S: SupportMap> Linkage<S> {
         self.check(0, values)?;
         let shape = self.bodies(link).get(body).ok_or(LinkageError::NoSuchBody { link, body })?;
         let (route, edge) = (&self.skeleton.views[link].route, PathEdge { from: values, to: values });
-        let (_, frame) = LinkMotion::new(route, edge, Scalar::ZERO).at(Scalar::ZERO);
+        let (_, frame) = edge.place(route, Scalar::ZERO);
         let placed = Posed::from_matrix(shape, frame.rotation, frame.translation);
         placed.map_err(|_| LinkageError::BodyNotFinite { link, body })
     }
@@ -210,8 +210,8 @@ impl<S: SupportMap> Linkage<S> {
         self.check(1, to)?;
         let ball = self.skeleton.links.get(link).ok_or(LinkageError::NoSuchBody { link, body: 0 })?.all;
         let (route, edge) = (&self.skeleton.views[link].route, PathEdge { from, to });
-        let motion = LinkMotion::new(route, edge, Scalar::ZERO);
-        let ((moving, frame), reach) = (motion.at(Scalar::ZERO), motion.distance(ball.center) + ball.radius);
+        let ((moving, frame), bounds) = (edge.place(route, Scalar::ZERO), edge.bounds(route));
+        let reach = route.distance(ball.center) + ball.radius;
         let at_first = if let Some(n) = along {
             let turned = frame.rotation.transpose_mul(axial::turning(moving.spin, -n));
             let farthest = self.bodies(link).iter().map(|body| support_value(body, turned));
@@ -219,8 +219,8 @@ impl<S: SupportMap> Linkage<S> {
         } else {
             moving.velocity_at(frame.of(ball.center)).norm() + moving.spin.norm() * ball.radius
         };
-        let near = at_first + motion.bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
-        let always = motion.bounds.speed.of(reach);
+        let near = at_first + bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
+        let always = bounds.speed.of(reach);
         // What the frame and the derivatives lose is a small part of what always holds.
         Ok(near.min(always) + always * (moving.frame.turn_error + epsilons(64.0)))
     }

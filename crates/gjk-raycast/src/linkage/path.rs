@@ -152,15 +152,15 @@ impl<S: SupportMap> Linkage<S> {
             let mut first = First::<S::Vector> { edge: index, contact: None, stop: None };
             let (skeleton, tree, space) = (&self.skeleton, scene.tree(), &mut *workspace);
             let mut sweep = Sweep { skeleton, tree, edge, target, space, end: duration, parts: 0 };
-            sweep.run(&mut |near| {
+            sweep.run(&mut |near, motion| {
                 work.casts += 1;
                 let options = options.with_max_time(duration);
                 if let Some(base) = self.skeleton.views[near.view].base {
                     let base = Body::Convex(&self.bodies[base][near.other]);
-                    self.cast(near, (&base, None), edge, options, &mut first, &mut observer)?;
+                    self.cast(near, motion, (&base, None), edge, options, &mut first, &mut observer)?;
                 } else if let Some(obstacle) = scene.get(near.other) {
                     let at = scene.tree().get(near.other).map(|around| around.center());
-                    self.cast(near, (obstacle, at), edge, options, &mut first, &mut observer)?;
+                    self.cast(near, motion, (obstacle, at), edge, options, &mut first, &mut observer)?;
                 }
                 Ok(first.end(duration))
             })?;
@@ -184,6 +184,7 @@ impl<S: SupportMap> Linkage<S> {
     fn cast<O: SupportMap<Vector = S::Vector>>(
         &self,
         near: &Near<ScalarOf<S>>,
+        motion: LinkMotion<'_, S::Vector>,
         (against, at): (&Body<O>, Option<S::Vector>),
         edge: PathEdge<'_, ScalarOf<S>>,
         options: MotionCastOptions<S::Vector>,
@@ -191,8 +192,8 @@ impl<S: SupportMap> Linkage<S> {
         observer: &mut Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<(), RayCastError> {
         let &Near { from, to, view, body, other } = near;
-        let LinkView { link, base, ref route } = self.skeleton.views[view];
-        let (motion, shape) = (LinkMotion::new(route, edge, from), &self.bodies[link][body]);
+        let LinkView { link, base, .. } = self.skeleton.views[view];
+        let shape = &self.bodies[link][body];
         let met = base.map_or(Met::Obstacle(other), |link| Met::Link { link, body: other });
         // A first guess of the normal.
         let center = motion.at(Scalar::ZERO).1.of(self.skeleton.links[link].each[body].center);
@@ -219,8 +220,7 @@ impl<S: SupportMap> Linkage<S> {
         }
         if let (Outcome::Hit(hit), Some(base)) = (&mut cast.outcome, base) {
             // It was seen from the second link.
-            let route = &self.skeleton.views[base].route;
-            let frame = LinkMotion::new(route, edge, from).at(hit.time).1;
+            let (_, frame) = edge.place(&self.skeleton.views[base].route, from + hit.time);
             (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
         }
         first.take(cast, near, link, met);
