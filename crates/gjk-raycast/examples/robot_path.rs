@@ -8,8 +8,8 @@
 use convex_support::glam::DVec3;
 use convex_support::{Ball, Cuboid, Posed, Rounded, Segment, SupportMap};
 use gjk_raycast::{
-    HalfSpace, Joint, JointBoxOutcome, Link, Linkage, LinkageError, LinkageOptions, Path, PathOutcome, PathWorkspace,
-    Pose, Scene,
+    HalfSpace, Joint, JointBoxOutcome, Link, Linkage, LinkageError, MotionCastOptions, Path, PathOutcome,
+    PathWorkspace, Pose, Scene,
 };
 
 type Shape = Box<dyn SupportMap<Vector = DVec3>>;
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut pairs = Vec::new();
     for pair in [[2, 0], [3, 0], [3, 1]] {
         let names = pair.map(|link| NAMES[link]);
-        match robot.joint_box(pair, &limits, LinkageOptions::new())?.outcome {
+        match robot.joint_box(pair, &limits, 0.0, 100_000)?.outcome {
             JointBoxOutcome::Never => println!("{} and {} never meet", names[0], names[1]),
             JointBoxOutcome::Meets { values, .. } => {
                 println!("{} and {} meet at {values:?}", names[0], names[1]);
@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut scene = Scene::new([post])?;
     scene.insert_half_space(HalfSpace::new(DVec3::Z, -0.001)?);
 
-    let options = LinkageOptions::new().with_target_distance(0.0005);
+    let options = MotionCastOptions::new().with_target_distance(0.0005);
     let mut workspace = PathWorkspace::new();
     let mut ask =
         |ways: &[[f64; 4]]| -> Result<Path<DVec3>, LinkageError> { robot.path(ways, &scene, options, &mut workspace) };

@@ -8,7 +8,7 @@ use convex_support::{
     Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap, support_value,
 };
 use gjk_raycast::{
-    Body, HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions, Met, Path,
+    Body, HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, Met, MotionCastOptions, Path,
     PathOutcome, PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
 };
 
@@ -36,7 +36,7 @@ fn ball_at(x: f64, y: f64) -> Posed<Ball<DVec2>> {
 }
 
 fn ask(robot: &Linkage<Bar>, ways: &[Vec<f64>], scene: &Scene<Posed<Ball<DVec2>>>) -> Path<DVec2> {
-    robot.path(ways, scene, LinkageOptions::new(), &mut PathWorkspace::new()).expect("values for its joints")
+    robot.path(ways, scene, MotionCastOptions::new(), &mut PathWorkspace::new()).expect("values for its joints")
 }
 
 /// A stretched arm that turns from an angle on meets a ball on its way when its middle line is 0.15 from the ball's
@@ -49,7 +49,7 @@ fn first_contacts_of_an_arm_are_those_of_its_closed_form() {
         let (angle, far) = (0.6 + 0.1 * f64::from(k), 0.4 + 0.12 * f64::from(k));
         let scene = Scene::new([ball_at(far * angle.cos(), far * angle.sin())]).expect("finite");
         let ways = [[-0.4, 0.0], [0.0, 0.0], [2.0, 0.0], [0.0, 0.0]];
-        let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut workspace).expect("two values each");
+        let path = robot.path(&ways, &scene, MotionCastOptions::new(), &mut workspace).expect("two values each");
         let contact = path.contact().expect("it turns by 2");
         let truth = (angle - (0.15 / far).asin()) / 2.0;
         assert_eq!((contact.edge, contact.link, contact.met), (1, usize::from(far > 1.0), Met::Obstacle(0)), "{far}");
@@ -84,7 +84,7 @@ fn links_of_one_robot_meet_one_another() {
         let normal = contact.normal.expect("they were apart");
         assert!((normal - end.normalize() * sign).length() < 1e-12, "out of the second, in the world: {contact:?}");
         assert!(ask(&chain, &[vec![0.0; 2], vec![alpha - 1e-9; 2]], &nothing).is_free(), "{pair:?}");
-        let near = LinkageOptions::new().with_target_distance(0.1);
+        let near = MotionCastOptions::new().with_target_distance(0.1);
         let sooner = chain.path(&[[0.0; 2], [2.0; 2]], &nothing, near, &mut PathWorkspace::new()).expect("valid");
         let truth = (-0.4_f64).acos() / 2.0;
         assert!(sooner.contact().is_some_and(|c| (c.time - truth).abs() < 1e-13), "{sooner:?}");
@@ -112,7 +112,7 @@ fn paths_on_threads_are_answered_as_one_by_one() {
     let (robot, scene) = (arm(), Scene::new([ball_at(1.0, 1.0)]).expect("finite"));
     let paths: Vec<_> = (0..40).map(|k| vec![vec![0.0, 0.0], vec![0.05 * f64::from(k), 0.3]]).collect();
     let alone: Vec<_> = paths.iter().map(|path| Ok(ask(&robot, path, &scene))).collect();
-    assert_eq!(robot.par_paths(&paths, &scene, LinkageOptions::new()), alone, "in the same order");
+    assert_eq!(robot.par_paths(&paths, &scene, MotionCastOptions::new()), alone, "in the same order");
 }
 
 /// What slides, in a frame that is turned, towards a wall.
@@ -123,7 +123,7 @@ fn a_joint_slides_along_its_axis() -> Result<(), Box<dyn std::error::Error>> {
     let robot = Linkage::new(joints, [Link { joint: Some(1), bodies: vec![Ball::new(0.5)?] }])?;
     let mut scene = Scene::<Ball<DVec3>>::default();
     let wall = scene.insert_half_space(HalfSpace::new(DVec3::NEG_X, -3.0)?);
-    let path = robot.path(&[[0.0], [1.0], [5.0]], &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
+    let path = robot.path(&[[0.0], [1.0], [5.0]], &scene, MotionCastOptions::new(), &mut PathWorkspace::new())?;
     let contact = path.contact().ok_or("it comes to 2.5")?;
     assert_eq!((contact.edge, contact.met), (1, Met::Obstacle(wall)), "{contact:?}");
     assert!(contact.lower <= 0.375 && 0.375 <= contact.upper && contact.upper - contact.lower < 1e-13, "{contact:?}");
@@ -223,7 +223,7 @@ fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(
         let size = [0.3, 1.0, 4.0][(random(&mut seed) * 3.0) as usize];
         let ways =
             [0; 3].map(|_| (0..robot.values()).map(|_| size * (2.0 * random(&mut seed) - 1.0)).collect::<Vec<_>>());
-        let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
+        let path = robot.path(&ways, &scene, MotionCastOptions::new(), &mut PathWorkspace::new())?;
         // The least signed distance at a time.
         let least = |edge: usize, time: f64| -> Result<f64, InvalidShape> {
             let values: Vec<f64> = ways[edge].iter().zip(&ways[edge + 1]).map(|(a, b)| a + time * (b - a)).collect();
@@ -280,7 +280,7 @@ fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Erro
     let joints = [turning(None, DVec2::X), turning(Some(0), DVec2::X)];
     let links = [None, Some(0), Some(1)].map(|joint| Link { joint, bodies: vec![bar()] });
     let chain = Linkage::new(joints, links)?;
-    let ask = |half: f64| chain.joint_box([2, 0], &[[-half, half]; 2], LinkageOptions::new());
+    let ask = |half: f64| chain.joint_box([2, 0], &[[-half, half]; 2], 0.0, 100_000);
     assert_eq!(ask(1.5)?.outcome, JointBoxOutcome::Never);
     let JointBoxOutcome::Meets { values, bodies } = ask(2.1)?.outcome else { return Err("they may meet".into()) };
     assert_eq!(bodies, [0, 0]);
@@ -291,7 +291,7 @@ fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Erro
     // No wider interval is free, and none that is free has a pose that is not.
     let mut seed = 7;
     let (limits, mut met) = ([[-1.9, 1.9], [-1.9, 2.4]], 0);
-    let found = chain.joint_box([2, 0], &limits, LinkageOptions::new())?;
+    let found = chain.joint_box([2, 0], &limits, 0.0, 100_000)?;
     for _ in 0..500 {
         let values = limits.map(|[low, high]: [f64; 2]| low + (high - low) * random(&mut seed)).to_vec();
         met += usize::from(!ask_own(&own, &values).is_free());
@@ -299,17 +299,17 @@ fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Erro
     assert_eq!(met > 0, matches!(found.outcome, JointBoxOutcome::Meets { .. }), "{met} poses, {found:?}");
 
     // A search that is cut short says how much of the box is open.
-    let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], LinkageOptions::new().with_max_boxes(9))?;
+    let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], 0.0, 9)?;
     assert!(matches!(cut.outcome, JointBoxOutcome::Undecided { share } if share > 0.0 && share < 1.0), "{cut:?}");
     // However few, at least one part is looked at, and none is lost.
     for most in 0..4 {
-        let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], LinkageOptions::new().with_max_boxes(most))?;
+        let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], 0.0, most)?;
         let JointBoxOutcome::Undecided { share } = cut.outcome else { return Err("not by so few".into()) };
         assert!(share > 0.0 && cut.boxes <= most + 1, "{most}: {cut:?}");
     }
     // Of no extent, the box is a pose.
     let pose = [[0.0, 0.0], [0.0, 0.0]];
-    let touching = chain.joint_box([1, 0], &pose, LinkageOptions::new().with_max_boxes(100))?;
+    let touching = chain.joint_box([1, 0], &pose, 0.0, 100)?;
     assert!(matches!(touching.outcome, JointBoxOutcome::Meets { .. }), "neighbours overlap: {touching:?}");
     Ok(())
 }
@@ -326,13 +326,13 @@ fn where_links_almost_meet_does_not_hide_where_they_do() -> Result<(), Box<dyn s
         let hand = vec![ball(0.2 - short, DVec2::X * -0.3)?, ball(0.201, aside)?];
         let joints = [turning(None, DVec2::ZERO), turning(Some(0), DVec2::X)];
         let robot = Linkage::new(joints, [post.clone(), Link { joint: Some(1), bodies: hand }])?;
-        let answer = robot.joint_box([1, 0], &[[-1.0, 1.0]; 2], LinkageOptions::new())?;
+        let answer = robot.joint_box([1, 0], &[[-1.0, 1.0]; 2], 0.0, 100_000)?;
         assert!(matches!(answer.outcome, JointBoxOutcome::Meets { bodies: [1, 0], .. }), "{answer:?}");
         assert!(answer.boxes < 100, "{answer:?}");
     }
     let hand = Link { joint: Some(0), bodies: vec![ball(0.5, DVec2::X)?] };
     let touching = Linkage::new([turning(None, DVec2::ZERO)], [post, hand])?;
-    let answer = touching.joint_box([1, 0], &[[0.25; 2]], LinkageOptions::new())?;
+    let answer = touching.joint_box([1, 0], &[[0.25; 2]], 0.0, 100_000)?;
     assert_eq!((answer.outcome, answer.boxes), (JointBoxOutcome::Undecided { share: 1.0 }, 1), "nothing can be halved");
     Ok(())
 }
@@ -361,7 +361,7 @@ fn what_is_no_linkage_or_path_is_refused_by_its_index() -> Result<(), Box<dyn st
 
     let scene = Scene::<Bar>::default();
     let refused = |ways: &[Vec<f64>], options| arm().path(ways, &scene, options, &mut PathWorkspace::new()).err();
-    let options = LinkageOptions::new();
+    let options = MotionCastOptions::new();
     assert_eq!(refused(&[], options), Some(LinkageError::EmptyPath));
     let short = LinkageError::Count { waypoint: 1, joints: 2, values: 1 };
     assert_eq!(refused(&[vec![0.0; 2], vec![1.0]], options), Some(short));
@@ -374,7 +374,7 @@ fn what_is_no_linkage_or_path_is_refused_by_its_index() -> Result<(), Box<dyn st
         "{option}"
     );
 
-    let boxes = |limits: &[[f64; 2]]| arm().joint_box([0, 1], limits, LinkageOptions::new()).err();
+    let boxes = |limits: &[[f64; 2]]| arm().joint_box([0, 1], limits, 0.0, 100_000).err();
     assert_eq!(boxes(&[[0.0, 1.0], [1.0, 0.5]]), Some(LinkageError::Interval { value: 1 }));
     assert_eq!(boxes(&[[0.0, 1.0]]), Some(LinkageError::Count { waypoint: 0, joints: 2, values: 1 }));
     assert_eq!(boxes(&[[0.0, 1.0], [0.0, f64::NAN]]), Some(LinkageError::Value { waypoint: 0, value: 1 }));
@@ -406,7 +406,7 @@ fn a_contact_at_the_end_of_a_part_is_one() -> Result<(), Box<dyn std::error::Err
     scene.insert_half_space(HalfSpace::new(DVec3::NEG_X * 2.0, -6.0)?);
     for (part, target) in [(0.25, 0.5), (0.5, 0.5), (0.75, 0.5), (0.125, 0.0), (0.625, 0.25)] {
         // The ball touches the wall, or comes as near as the target, when its middle is there.
-        let (end, wanted) = (2.5 - target, LinkageOptions::new().with_target_distance(target));
+        let (end, wanted) = (2.5 - target, MotionCastOptions::new().with_target_distance(target));
         let ways = [[end - 4.0 * part], [end + 4.0 * (1.0 - part)]];
         let path = robot.path(&ways, &scene, wanted, &mut PathWorkspace::new())?;
         let contact = path.contact().ok_or("it is decided")?;
@@ -427,7 +427,7 @@ fn a_contact_at_a_waypoint_is_one() -> Result<(), Box<dyn std::error::Error>> {
     let mut scene = Scene::new([Posed::translated(Ball::new(0.3)?, DVec3::new(2.9, 0.0, 0.0))?])?;
     let wall = scene.insert_half_space(HalfSpace::new(DVec3::NEG_X * 2.0, -6.0)?);
     let ask = |ways: &[[f64; 1]], target: f64| {
-        let options = LinkageOptions::new().with_target_distance(target);
+        let options = MotionCastOptions::new().with_target_distance(target);
         robot.path(ways, &scene, options, &mut PathWorkspace::new())
     };
     for target in [0.0, 0.25, 0.1] {
@@ -462,7 +462,7 @@ fn the_time_of_a_contact_is_derived_by_the_waypoints() -> Result<(), Box<dyn std
         (&chain, ways(&[0.1, 0.2, 0.0], &[1.9, 1.6, 2.3]), &Scene::default()),
     ];
     for (robot, ways, scene) in cases {
-        let options = LinkageOptions::new().with_target_distance(0.02);
+        let options = MotionCastOptions::new().with_target_distance(0.02);
         let time = |ways: &[Vec<f64>]| -> Result<_, LinkageError> {
             let path = robot.path(ways, scene, options, &mut PathWorkspace::new())?;
             Ok(path.contact())
@@ -491,8 +491,9 @@ fn the_time_of_a_contact_is_derived_by_the_waypoints() -> Result<(), Box<dyn std
 fn a_path_is_asked_until_a_time() -> Result<(), Box<dyn std::error::Error>> {
     let (robot, scene) = (arm(), Scene::new([ball_at(1.0, 1.0)])?);
     let ways = [[-1.0, 0.0], [0.0, 0.0], [2.0, 0.0]];
-    let ask =
-        |until: f64| robot.path(&ways, &scene, LinkageOptions::new().with_max_time(until), &mut PathWorkspace::new());
+    let ask = |until: f64| {
+        robot.path(&ways, &scene, MotionCastOptions::new().with_max_time(until), &mut PathWorkspace::new())
+    };
     let contact = ask(f64::INFINITY)?.contact().ok_or("it turns past the ball")?;
     assert_eq!(contact.edge, 1);
     let at = 1.0 + contact.time;
@@ -517,7 +518,7 @@ fn the_planes_of_a_free_path_are_shown() {
     scene.insert_half_space(HalfSpace::new(DVec2::Y, -1.0).expect("a normal"));
     let ways = [[0.0, 0.2], [0.0, 2.6], [1.5, 2.6], [1.5, 0.2]];
     let (mut shown, mut workspace) = (Vec::new(), PathWorkspace::new());
-    let path = robot.path_with(&ways, &scene, LinkageOptions::new(), &mut workspace, |part| shown.push(part));
+    let path = robot.path_with(&ways, &scene, MotionCastOptions::new(), &mut workspace, |part| shown.push(part));
     assert!(path.is_ok_and(|path| path.is_free()), "bent, it passes the first ball");
     for (edge, link, other) in (0..24).map(|k| (k / 8, k / 4 % 2, k % 4)) {
         let met = Met::Obstacle(other);
@@ -581,7 +582,7 @@ fn brackets_hold_in_single_precision() -> Result<(), Box<dyn std::error::Error>>
         let (x, y) = (0.75 - 0.0625 * f32::from(k), 0.5 + 0.125 * f32::from(k));
         let scene = Scene::new([Posed::translated(Ball::new(0.125)?, Vec2::new(x, y))?])?;
         let ways = [[-0.5, 0.0], [2.5, 0.0]];
-        let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
+        let path = robot.path(&ways, &scene, MotionCastOptions::new(), &mut PathWorkspace::new())?;
         let contact = path.contact().ok_or("it turns past the ball")?;
         let (x, y) = (f64::from(x), f64::from(y));
         let truth = (y.atan2(x) - (0.1875 / x.hypot(y)).asin() + 0.5) / 3.0;

@@ -5,7 +5,7 @@ use convex_support::{Scalar as _, Vector};
 #[cfg(not(target_family = "wasm"))]
 use cpu_time::ThreadTime;
 use gjk_raycast::{
-    FreeInterval, Linkage, LinkageOptions, Met, PathContact, PathOutcome, PathStop, PathWorkspace, Scene,
+    FreeInterval, Linkage, Met, MotionCastOptions, PathContact, PathOutcome, PathStop, PathWorkspace, Scene,
 };
 #[cfg(target_family = "wasm")]
 use std::time::Instant as ThreadTime;
@@ -57,7 +57,7 @@ impl Path {
         how.method(&[("gjk", ())])?;
         let build = |(i, body): (usize, &Body)| body.build(&format!("obstacles[{i}]"), how.meshes);
         let obstacles = self.obstacles.iter().enumerate().map(build).collect::<Result<Vec<_>, _>>()?;
-        let mut options = LinkageOptions::new().with_target_distance(scalar::<V>(self.target_distance));
+        let mut options = MotionCastOptions::new().with_target_distance(scalar::<V>(self.target_distance));
         options.tolerance = how.tolerance::<V>()?.unwrap_or(options.tolerance);
         let pairs = self.pairs.iter().copied();
         Ok(Way {
@@ -73,7 +73,7 @@ struct Way<V: Vector> {
     robot: Linkage<Solid<V>>,
     scene: Scene<Solid<V>>,
     waypoints: Vec<Vec<V::Scalar>>,
-    options: LinkageOptions<V>,
+    options: MotionCastOptions<V>,
 }
 
 impl<V: Space> Question for Way<V> {

@@ -19,7 +19,7 @@ use crate::axial;
 ///
 /// ```
 /// use convex_support::{Ball, Posed, Rounded, Segment, glam::DVec3};
-/// use gjk_raycast::{Joint, JointKind, Link, Linkage, LinkageOptions, PathWorkspace, Pose, Scene};
+/// use gjk_raycast::{Joint, JointKind, Link, Linkage, MotionCastOptions, PathWorkspace, Pose, Scene};
 ///
 /// // An arm of two links of length 1, whose shoulder and elbow turn about z.
 /// let bar = Rounded::new(Segment::new([DVec3::ZERO, DVec3::X])?, 0.05)?;
@@ -34,7 +34,7 @@ use crate::axial;
 ///
 /// // It reaches along x, and is to reach along y. A ball is in the way of the forearm.
 /// let scene = Scene::new([Posed::translated(Ball::new(0.1)?, DVec3::new(1.25, 1.25, 0.0))?])?;
-/// let (mut workspace, options) = (PathWorkspace::new(), LinkageOptions::new());
+/// let (mut workspace, options) = (PathWorkspace::new(), MotionCastOptions::new());
 /// let straight = [[0.0, 0.0], [90f64.to_radians(), 0.0]];
 /// let path = arm.path(&straight, &scene, options, &mut workspace)?;
 /// let contact = path.contact().ok_or("the forearm sweeps over the ball")?;
@@ -236,7 +236,7 @@ impl<S: SupportMap> Linkage<S> {
     ///
     /// ```
     /// use convex_support::{Ball, glam::DVec2};
-    /// use gjk_raycast::{HalfSpace, Joint, Link, Linkage, LinkageOptions, PathWorkspace, Pose, Scene};
+    /// use gjk_raycast::{HalfSpace, Joint, Link, Linkage, MotionCastOptions, PathWorkspace, Pose, Scene};
     ///
     /// // A ball of radius 1 slides from x = 0 to 4, and meets a wall at x = 3 when half of that is done.
     /// let slide = Joint::prismatic(None, Pose::default(), DVec2::X);
@@ -244,7 +244,7 @@ impl<S: SupportMap> Linkage<S> {
     /// let mut scene = Scene::<Ball<DVec2>>::default();
     /// scene.insert_half_space(HalfSpace::new(DVec2::NEG_X, -3.0)?);
     /// let ways = [[0.0], [4.0]];
-    /// let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
+    /// let path = robot.path(&ways, &scene, MotionCastOptions::new(), &mut PathWorkspace::new())?;
     /// let contact = path.contact().ok_or("it meets the wall")?;
     ///
     /// // t = (2 − from)/(to − from)

@@ -9,60 +9,7 @@ use super::linkage::{LinkView, Linkage};
 use super::result::{FreeInterval, Met, Path, PathContact, PathOutcome, PathStop, PathWork, ProvedSteps};
 use super::sweep::{Near, PathWorkspace, Sweep};
 use crate::motion::checked;
-use crate::options::setters;
-use crate::{Body, Impact, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene};
-
-/// Parts of a box of joint values to look at: a pair of links of a robot arm takes up to ten thousand.
-const MAX_BOXES: usize = 100_000;
-
-/// Options of [`Linkage::path`] and [`Linkage::joint_box`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct LinkageOptions<V: Vector> {
-    /// How near is too near: bodies count as touching at this distance. A negative value is taken for zero. Default: 0.
-    pub target_distance: V::Scalar,
-    /// As of [`MotionCastOptions::tolerance`]. Default: 0.
-    pub tolerance: V::Scalar,
-    /// As of [`MotionCastOptions::max_iterations`], for each body of a link and each that is near it. Default: that of
-    /// a motion cast.
-    pub max_iterations: usize,
-    /// The end of what is asked of a path: a time, of which each edge takes 1. A negative value is taken for zero.
-    /// Default: infinity.
-    pub max_time: V::Scalar,
-    /// The parts of a box of joint values to look at, after which to give up. Default: 100 000.
-    pub max_boxes: usize,
-}
-
-impl<V: Vector> LinkageOptions<V> {
-    /// The default options.
-    #[must_use]
-    pub fn new() -> Self {
-        let MotionCastOptions { target_distance, tolerance, max_iterations, max_time, .. } =
-            MotionCastOptions::<V>::new();
-        Self { target_distance, tolerance, max_iterations, max_time, max_boxes: MAX_BOXES }
-    }
-
-    setters!(target_distance, tolerance, max_iterations, max_time);
-
-    /// With another number of [parts](Self::max_boxes).
-    #[must_use]
-    pub const fn with_max_boxes(mut self, max_boxes: usize) -> Self {
-        self.max_boxes = max_boxes;
-        self
-    }
-
-    /// Those of casts.
-    pub(super) fn checked(&self) -> Result<MotionCastOptions<V>, RayCastError> {
-        let &Self { target_distance, tolerance, max_iterations, max_time, .. } = self;
-        checked(MotionCastOptions { target_distance, tolerance, max_iterations, max_time, ..MotionCastOptions::new() })
-    }
-}
-
-impl<V: Vector> Default for LinkageOptions<V> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+use crate::{Body, Impact, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene, StartInContact};
 
 impl<S: SupportMap> Linkage<S> {
     /// Whether the way along waypoints is free, among the bodies of a scene at rest, and of the
@@ -76,6 +23,10 @@ impl<S: SupportMap> Linkage<S> {
     /// contact. Bounds account for the rounding of the joints' poses too, so that [`PathOutcome::Free`] is a proof
     /// about the linkage as it is given by its numbers.
     ///
+    /// The options are those of the casts, but that `max_time` is a time of the path, each edge of which takes 1, and
+    /// `max_iterations` counts for each body of a link and each that is near it. A start in contact is a contact,
+    /// whatever they say of it, and their axis is not looked at.
+    ///
     /// # Errors
     /// [`LinkageError`] if the path is empty, a waypoint has another number of values than [`values`](Self::values), a
     /// value is not finite, or an option is NaN.
@@ -83,7 +34,7 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         waypoints: &[W],
         scene: &Scene<O>,
-        options: LinkageOptions<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
         workspace: &mut PathWorkspace<S::Vector>,
     ) -> Result<Path<S::Vector>, LinkageError> {
         self.watched_path(waypoints, scene, options, workspace, None)
@@ -100,7 +51,7 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         waypoints: &[W],
         scene: &Scene<O>,
-        options: LinkageOptions<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
         workspace: &mut PathWorkspace<S::Vector>,
         mut observer: impl FnMut(FreeInterval<S::Vector>),
     ) -> Result<Path<S::Vector>, LinkageError> {
@@ -113,7 +64,7 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         paths: &[P],
         scene: &Scene<O>,
-        options: LinkageOptions<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
     ) -> alloc::vec::Vec<Result<Path<S::Vector>, LinkageError>>
     where
         S: Sync,
@@ -127,11 +78,12 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         waypoints: &[W],
         scene: &Scene<O>,
-        options: LinkageOptions<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
         workspace: &mut PathWorkspace<S::Vector>,
         mut observer: Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<Path<S::Vector>, LinkageError> {
-        let options = options.checked()?;
+        // What is in contact as a part of an edge begins is so, whatever was before.
+        let options = MotionCastOptions { start_in_contact: StartInContact::Report, ..checked(options)? };
         for (index, waypoint) in waypoints.iter().enumerate() {
             self.check(index, waypoint.as_ref())?;
         }
