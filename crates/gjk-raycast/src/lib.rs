@@ -134,7 +134,6 @@ mod curvature;
 #[cfg(feature = "serde")]
 mod data;
 mod derivative;
-mod displaced;
 mod distance;
 mod distances;
 mod double;
