@@ -188,7 +188,7 @@ pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{linear_cast, linear_cast_with};
 pub use linkage::{
     FreeBox, FreeInterval, Joint, JointBox, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, Met, Path,
-    PathContact, PathOutcome, PathStop, PathWork, PathWorkspace,
+    PathContact, PathWork, PathWorkspace,
 };
 pub use motion::{
     ChainMotion, Displacement, MotionCastOptions, MotionIterate, MovingBall, Pose, RigidMotion, Trajectory,

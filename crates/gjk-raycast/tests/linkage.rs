@@ -9,7 +9,7 @@ use convex_support::{
 };
 use gjk_raycast::{
     Body, HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, Met, MotionCastOptions, Path,
-    PathOutcome, PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
+    PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
 };
 
 type Bar = Rounded<Segment<DVec2>>;
@@ -50,12 +50,12 @@ fn first_contacts_of_an_arm_are_those_of_its_closed_form() {
         let scene = Scene::new([ball_at(far * angle.cos(), far * angle.sin())]).expect("finite");
         let ways = [[-0.4, 0.0], [0.0, 0.0], [2.0, 0.0], [0.0, 0.0]];
         let path = robot.path(&ways, &scene, MotionCastOptions::new(), &mut workspace).expect("two values each");
-        let contact = path.contact().expect("it turns by 2");
+        let (contact, hit) = path.contact().expect("it turns by 2");
         let truth = (angle - (0.15 / far).asin()) / 2.0;
         assert_eq!((contact.edge, contact.link, contact.met), (1, usize::from(far > 1.0), Met::Obstacle(0)), "{far}");
-        assert!(contact.lower <= truth && truth <= contact.upper, "{truth} is not in {contact:?}");
-        assert!(contact.upper - contact.lower < 1e-12 && (contact.time - truth).abs() < 1e-13, "{contact:?}");
-        assert!((contact.point - DVec2::from_angle(angle) * far).length() - 0.1 < 1e-12, "{contact:?}");
+        assert!(contact.cast.lower <= truth && truth <= contact.cast.upper, "{truth} is not in {contact:?}");
+        assert!(contact.cast.upper - contact.cast.lower < 1e-12 && (hit.time - truth).abs() < 1e-13, "{contact:?}");
+        assert!((hit.point - DVec2::from_angle(angle) * far).length() - 0.1 < 1e-12, "{contact:?}");
         assert_eq!(path, ask(&robot, &ways.map(Vec::from), &scene), "a workspace remembers nothing");
         // Short of the ball by 1e-9 it is free.
         assert!(ask(&robot, &[vec![0.0, 0.0], vec![2.0 * truth - 1e-9, 0.0]], &scene).is_free(), "{far}");
@@ -72,22 +72,24 @@ fn links_of_one_robot_meet_one_another() {
     for (pair, sign) in [([2, 0], 1.0), ([0, 2], -1.0)] {
         let chain = chain.clone().with_pairs([pair]).expect("two links");
         let path = ask(&chain, &[vec![0.0; 2], vec![2.5; 2]], &nothing);
-        let contact = path.contact().expect("the ends come together at 120°");
+        let (contact, hit) = path.contact().expect("the ends come together at 120°");
         let (alpha, truth) = ((-0.45_f64).acos(), (-0.45_f64).acos() / 2.5);
         assert!(
-            contact.lower <= truth && truth <= contact.upper && contact.upper - contact.lower < 1e-12,
+            contact.cast.lower <= truth
+                && truth <= contact.cast.upper
+                && contact.cast.upper - contact.cast.lower < 1e-12,
             "{contact:?}"
         );
         assert_eq!((contact.link, contact.met), (pair[0], Met::Link { link: pair[1], body: 0 }), "in the order asked");
         let end = DVec2::X + DVec2::from_angle(alpha) + DVec2::from_angle(2.0 * alpha);
-        assert!((contact.point - end * 0.5).length() < 1e-12, "halfway between the ends: {contact:?}");
-        let normal = contact.normal.expect("they were apart");
+        assert!((hit.point - end * 0.5).length() < 1e-12, "halfway between the ends: {contact:?}");
+        let normal = hit.normal.expect("they were apart");
         assert!((normal - end.normalize() * sign).length() < 1e-12, "out of the second, in the world: {contact:?}");
         assert!(ask(&chain, &[vec![0.0; 2], vec![alpha - 1e-9; 2]], &nothing).is_free(), "{pair:?}");
         let near = MotionCastOptions::new().with_target_distance(0.1);
         let sooner = chain.path(&[[0.0; 2], [2.0; 2]], &nothing, near, &mut PathWorkspace::new()).expect("valid");
         let truth = (-0.4_f64).acos() / 2.0;
-        assert!(sooner.contact().is_some_and(|c| (c.time - truth).abs() < 1e-13), "{sooner:?}");
+        assert!(sooner.contact().is_some_and(|(_, hit)| (hit.time - truth).abs() < 1e-13), "{sooner:?}");
     }
     assert!(ask(&chain, &[vec![0.0; 2], vec![2.5; 2]], &nothing).is_free(), "none is asked about another");
 }
@@ -100,10 +102,13 @@ fn two_robots_meet_one_another() {
     let links = [0, 1].map(|joint| Link { joint: Some(joint), bodies: vec![bar()] });
     let gate = Linkage::new(joints, links).expect("a linkage").with_pairs([[0, 1]]).expect("two links");
     let path = ask(&gate, &[vec![1.2, PI - 1.2], vec![0.0, PI]], &Scene::default());
-    let (contact, truth) = (path.contact().expect("they meet"), (1.2 - 0.85_f64.acos()) / 1.2);
+    let ((contact, hit), truth) = (path.contact().expect("they meet"), (1.2 - 0.85_f64.acos()) / 1.2);
     assert_eq!((contact.link, contact.met), (0, Met::Link { link: 1, body: 0 }), "{contact:?}");
-    assert!(contact.lower <= truth && truth <= contact.upper && contact.upper - contact.lower < 1e-12, "{contact:?}");
-    assert!((contact.point - DVec2::new(0.9, (1.0_f64 - 0.85 * 0.85).sqrt())).length() < 1e-12, "{contact:?}");
+    assert!(
+        contact.cast.lower <= truth && truth <= contact.cast.upper && contact.cast.upper - contact.cast.lower < 1e-12,
+        "{contact:?}"
+    );
+    assert!((hit.point - DVec2::new(0.9, (1.0_f64 - 0.85 * 0.85).sqrt())).length() < 1e-12, "{contact:?}");
 }
 
 #[cfg(feature = "rayon")]
@@ -124,18 +129,21 @@ fn a_joint_slides_along_its_axis() -> Result<(), Box<dyn std::error::Error>> {
     let mut scene = Scene::<Ball<DVec3>>::default();
     let wall = scene.insert_half_space(HalfSpace::new(DVec3::NEG_X, -3.0)?);
     let path = robot.path(&[[0.0], [1.0], [5.0]], &scene, MotionCastOptions::new(), &mut PathWorkspace::new())?;
-    let contact = path.contact().ok_or("it comes to 2.5")?;
+    let (contact, hit) = path.contact().ok_or("it comes to 2.5")?;
     assert_eq!((contact.edge, contact.met), (1, Met::Obstacle(wall)), "{contact:?}");
-    assert!(contact.lower <= 0.375 && 0.375 <= contact.upper && contact.upper - contact.lower < 1e-13, "{contact:?}");
-    assert!((contact.point - DVec3::new(3.0, 1.0, 0.0)).length() < 1e-13, "{contact:?}");
+    assert!(
+        contact.cast.lower <= 0.375 && 0.375 <= contact.cast.upper && contact.cast.upper - contact.cast.lower < 1e-13,
+        "{contact:?}"
+    );
+    assert!((hit.point - DVec3::new(3.0, 1.0, 0.0)).length() < 1e-13, "{contact:?}");
     Ok(())
 }
 
 #[test]
 fn a_path_of_one_waypoint_is_a_pose() {
     let (robot, scene) = (arm(), Scene::new([ball_at(1.0, 1.0)]).expect("finite"));
-    let contact = ask(&robot, &[vec![FRAC_PI_4, 0.0]], &scene).contact().expect("the ball is in the forearm");
-    assert_eq!((contact.edge, contact.time, contact.link, contact.normal), (0, 0.0, 1, None), "{contact:?}");
+    let (contact, hit) = ask(&robot, &[vec![FRAC_PI_4, 0.0]], &scene).contact().expect("the ball is in the forearm");
+    assert_eq!((contact.edge, hit.time, contact.link, hit.normal), (0, 0.0, 1, None), "{contact:?}");
     assert!(ask(&robot, &[vec![0.0, 0.0]], &scene).is_free());
     let still = ask(&robot, &vec![vec![0.3, 0.0]; 3], &scene);
     assert!(still.is_free(), "it may also rest for two edges: {still:?}");
@@ -248,11 +256,7 @@ fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(
             }
             Ok(least)
         };
-        let proved = match path.outcome {
-            PathOutcome::Free => (1, 1.0),
-            PathOutcome::Contact(contact) => (contact.edge, contact.lower),
-            PathOutcome::Undecided(stop) => (stop.edge, stop.lower),
-        };
+        let proved = path.first.map_or((1, 1.0), |first| (first.edge, first.cast.lower));
         for k in 0..20 {
             for (edge, end) in
                 [(0, if proved.0 == 0 { proved.1 } else { 1.0 }), (1, if proved.0 == 0 { 0.0 } else { proved.1 })]
@@ -263,9 +267,9 @@ fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(
             }
         }
         match path.contact() {
-            Some(contact) => {
+            Some((contact, _)) => {
                 contacts += 1;
-                assert!(least(contact.edge, contact.upper)? < 1e-12, "{path:?}");
+                assert!(least(contact.edge, contact.cast.upper)? < 1e-12, "{path:?}");
             }
             None => free += usize::from(path.is_free()),
         }
@@ -409,9 +413,12 @@ fn a_contact_at_the_end_of_a_part_is_one() -> Result<(), Box<dyn std::error::Err
         let (end, wanted) = (2.5 - target, MotionCastOptions::new().with_target_distance(target));
         let ways = [[end - 4.0 * part], [end + 4.0 * (1.0 - part)]];
         let path = robot.path(&ways, &scene, wanted, &mut PathWorkspace::new())?;
-        let contact = path.contact().ok_or("it is decided")?;
-        assert!(contact.lower <= part && part <= contact.upper && contact.is_certain(), "{part}: {contact:?}");
-        assert!(contact.upper - contact.lower < 1e-13, "{part}: {contact:?}");
+        let (contact, _) = path.contact().ok_or("it is decided")?;
+        assert!(
+            contact.cast.lower <= part && part <= contact.cast.upper && contact.cast.is_certain(),
+            "{part}: {contact:?}"
+        );
+        assert!(contact.cast.upper - contact.cast.lower < 1e-13, "{part}: {contact:?}");
     }
     Ok(())
 }
@@ -433,15 +440,15 @@ fn a_contact_at_a_waypoint_is_one() -> Result<(), Box<dyn std::error::Error>> {
     for target in [0.0, 0.25, 0.1] {
         let end = 2.1 - target;
         for (ways, edge) in [(vec![[0.0], [end], [3.0]], 0), (vec![[-1.0], [-0.5], [end], [end + 1.0], [end]], 1)] {
-            let contact = ask(&ways, target)?.contact().ok_or("it is decided")?;
+            let (contact, hit) = ask(&ways, target)?.contact().ok_or("it is decided")?;
             assert_eq!((contact.edge, contact.met), (edge, Met::Obstacle(0)), "before the wall {wall}: {contact:?}");
-            assert!(contact.lower <= 1.0 && 1.0 <= contact.upper && contact.is_certain(), "{contact:?}");
-            assert!(contact.upper - contact.lower < 1e-12 && contact.time == 1.0, "{contact:?}");
+            assert!(contact.cast.lower <= 1.0 && 1.0 <= contact.cast.upper && contact.cast.is_certain(), "{contact:?}");
+            assert!(contact.cast.upper - contact.cast.lower < 1e-12 && hit.time == 1.0, "{contact:?}");
         }
         // One that only touches there stays undecided, as nobody can know it, and what comes later is not taken for it.
         let touching = ask(&[[0.0], [end], [0.0], [3.0]], target)?;
         assert!(!touching.is_free(), "{touching:?}");
-        assert!(touching.contact().is_none_or(|contact| contact.edge == 0), "{touching:?}");
+        assert!(touching.contact().is_none_or(|(contact, _)| contact.edge == 0), "{touching:?}");
     }
     Ok(())
 }
@@ -467,14 +474,14 @@ fn the_time_of_a_contact_is_derived_by_the_waypoints() -> Result<(), Box<dyn std
             let path = robot.path(ways, scene, options, &mut PathWorkspace::new())?;
             Ok(path.contact())
         };
-        let contact = time(&ways)?.ok_or("it is on its way")?;
+        let (contact, _) = time(&ways)?.ok_or("it is on its way")?;
         assert_eq!(matches!(contact.met, Met::Link { .. }), scene.is_empty(), "{contact:?}");
         let gradient = robot.time_gradient(&ways, &contact).ok_or("it comes nearer")?;
         for (k, end) in (0..robot.values()).flat_map(|k| [(k, 0), (k, 1)]) {
             let at = |step: f64| {
                 let mut ways = ways.clone();
                 ways[end][k] += step;
-                time(&ways).map(|contact| contact.map_or(f64::NAN, |contact| contact.time))
+                time(&ways).map(|contact| contact.map_or(f64::NAN, |(_, hit)| hit.time))
             };
             let difference = (at(1e-6)? - at(-1e-6)?) / 2e-6;
             let derivative = gradient[k][end];
@@ -494,17 +501,17 @@ fn a_path_is_asked_until_a_time() -> Result<(), Box<dyn std::error::Error>> {
     let ask = |until: f64| {
         robot.path(&ways, &scene, MotionCastOptions::new().with_max_time(until), &mut PathWorkspace::new())
     };
-    let contact = ask(f64::INFINITY)?.contact().ok_or("it turns past the ball")?;
+    let (contact, hit) = ask(f64::INFINITY)?.contact().ok_or("it turns past the ball")?;
     assert_eq!(contact.edge, 1);
-    let at = 1.0 + contact.time;
+    let at = 1.0 + hit.time;
     for until in [-1.0, 0.0, 0.5, 1.0, at - 1e-9] {
         assert!(ask(until)?.is_free(), "{until}");
     }
     for until in [at + 1e-9, 1.9, 2.0, 7.0] {
-        let sooner = ask(until)?.contact().ok_or("it is met before")?;
-        assert!(sooner.is_certain() && (sooner.time - contact.time).abs() < 1e-13, "{until}: {sooner:?}");
+        let (sooner, there) = ask(until)?.contact().ok_or("it is met before")?;
+        assert!(sooner.cast.is_certain() && (there.time - hit.time).abs() < 1e-13, "{until}: {sooner:?}");
     }
-    assert!(ask(at)?.contact().is_none_or(|contact| !contact.is_certain()), "rounding decides");
+    assert!(ask(at)?.contact().is_none_or(|(contact, _)| !contact.cast.is_certain()), "rounding decides");
     assert!(matches!(ask(f64::NAN), Err(LinkageError::Option(_))), "no time");
     Ok(())
 }
@@ -583,10 +590,10 @@ fn brackets_hold_in_single_precision() -> Result<(), Box<dyn std::error::Error>>
         let scene = Scene::new([Posed::translated(Ball::new(0.125)?, Vec2::new(x, y))?])?;
         let ways = [[-0.5, 0.0], [2.5, 0.0]];
         let path = robot.path(&ways, &scene, MotionCastOptions::new(), &mut PathWorkspace::new())?;
-        let contact = path.contact().ok_or("it turns past the ball")?;
+        let (contact, _) = path.contact().ok_or("it turns past the ball")?;
         let (x, y) = (f64::from(x), f64::from(y));
         let truth = (y.atan2(x) - (0.1875 / x.hypot(y)).asin() + 0.5) / 3.0;
-        let [lower, upper] = [contact.lower, contact.upper].map(f64::from);
+        let [lower, upper] = [contact.cast.lower, contact.cast.upper].map(f64::from);
         assert!(lower <= truth && truth <= upper && upper - lower < 1e-4, "{truth} is not in {contact:?}");
     }
     Ok(())

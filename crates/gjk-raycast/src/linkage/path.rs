@@ -6,10 +6,10 @@ use num_traits::Float;
 use super::error::LinkageError;
 use super::link_motion::{LinkMotion, PathEdge};
 use super::linkage::{LinkView, Linkage};
-use super::result::{FreeInterval, Met, Path, PathContact, PathOutcome, PathStop, PathWork, ProvedSteps};
+use super::result::{FreeInterval, Met, Path, PathContact, PathWork, ProvedSteps};
 use super::sweep::{Near, PathWorkspace, Sweep};
 use crate::motion::checked;
-use crate::{Body, Impact, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene, StartInContact};
+use crate::{Body, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene, StartInContact};
 
 impl<S: SupportMap> Linkage<S> {
     /// Whether the way along waypoints is free, among the bodies of a scene at rest, and of the
@@ -20,7 +20,7 @@ impl<S: SupportMap> Linkage<S> {
     ///
     /// Along each edge, what comes near is found first. What is near is cast, earliest first, and only until the first
     /// contact so far: [`motion_cast`](crate::motion_cast()) proves it free at all times, or brackets its first
-    /// contact. Bounds account for the rounding of the joints' poses too, so that [`PathOutcome::Free`] is a proof
+    /// contact. Bounds account for the rounding of the joints' poses too, so that a free path is a proof
     /// about the linkage as it is given by its numbers.
     ///
     /// The options are those of the casts, but that `max_time` is a time of the path, each edge of which takes 1, and
@@ -117,19 +117,16 @@ impl<S: SupportMap> Linkage<S> {
                 Ok(first.end(duration))
             })?;
             work.parts += sweep.parts;
-            let outcome = open.map_or(first.outcome(), |open| Some(first.goes_on(open)));
+            let found = open.map_or(first.of_both(), |open| Some(first.goes_on(open)));
             // What rounding leaves open at a waypoint, the next edge may decide.
-            if open.is_none()
-                && index + 1 < last
-                && rest > Scalar::ONE
-                && outcome.is_some_and(|outcome| is_open_at_end(&outcome))
-            {
-                open = outcome;
-            } else if let Some(outcome) = outcome {
-                return Ok(Path { outcome, work });
+            let may_go_on = open.is_none() && index + 1 < last && rest > Scalar::ONE;
+            if may_go_on && found.is_some_and(|found| is_open_at_end(&found)) {
+                open = found;
+            } else if found.is_some() {
+                return Ok(Path { first: found, work });
             }
         }
-        Ok(Path { outcome: PathOutcome::Free, work })
+        Ok(Path { first: None, work })
     }
 
     /// Casts a body at what may come near it.
@@ -175,7 +172,7 @@ impl<S: SupportMap> Linkage<S> {
             let (_, frame) = edge.place(&self.skeleton.views[base].route, from + hit.time);
             (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
         }
-        first.take(cast, near, link, met);
+        first.take(PathContact { edge: first.edge, link, body, met, cast }, from);
         Ok(())
     }
 }
@@ -185,62 +182,62 @@ struct First<V: Vector> {
     edge: usize,
     contact: Option<PathContact<V>>,
     /// Where an undecided cast may be one.
-    stop: Option<PathStop<V::Scalar>>,
+    stop: Option<PathContact<V>>,
 }
 
 impl<V: Vector> First<V> {
-    /// Takes the cast of a body. The first contact of all is bracketed by the least bounds of each, and named is the
-    /// one that is certain first, which is the one that is met at the upper bound.
-    fn take(&mut self, cast: MotionCast<V>, &Near { from, body, .. }: &Near<V::Scalar>, link: usize, met: Met) {
+    /// Takes the cast of a body from a time on. The first contact of all is bracketed by the least bounds of each, and
+    /// named is the one that is certain first, which is the one that is met at the upper bound.
+    fn take(&mut self, mut next: PathContact<V>, from: V::Scalar) {
         // The sum with a start is rounded.
         let room = if from == V::Scalar::ZERO { from } else { V::Scalar::EPSILON };
-        let [lower, upper] = [(from + cast.lower - room).max(from), from + cast.upper + room];
-        match cast.outcome {
+        let cast = &mut next.cast;
+        (cast.lower, cast.upper) = ((from + cast.lower - room).max(from), from + cast.upper + room);
+        match &mut cast.outcome {
             Outcome::Miss(_) => {}
             Outcome::Undecided => {
-                if self.stop.is_none_or(|stop| lower < stop.lower) {
-                    self.stop = Some(PathStop { edge: self.edge, lower, link, body, met });
+                if self.stop.is_none_or(|stop| next.cast.lower < stop.cast.lower) {
+                    self.stop = Some(next);
                 }
             }
-            Outcome::Hit(Impact { time, point, normal }) => {
-                let (edge, time, status) = (self.edge, (from + time).min(upper).max(lower), cast.status);
-                let next = PathContact { edge, time, lower, upper, link, body, met, point, normal, status };
+            Outcome::Hit(hit) => {
+                hit.time = (from + hit.time).min(cast.upper).max(cast.lower);
+                let when = |PathContact { cast, .. }: &PathContact<V>| match cast.outcome {
+                    Outcome::Hit(hit) if !cast.is_certain() => hit.time,
+                    _ => cast.upper,
+                };
                 let known = self.contact.unwrap_or(next);
-                let when = |contact: &PathContact<V>| if contact.is_certain() { contact.upper } else { contact.time };
-                let earlier = if when(&next) < when(&known) { next } else { known };
-                let (lower, upper) = (lower.min(known.lower), upper.min(known.upper));
-                self.contact = Some(PathContact { lower, upper, ..earlier });
+                let mut earlier = if when(&next) < when(&known) { next } else { known };
+                earlier.cast.lower = next.cast.lower.min(known.cast.lower);
+                earlier.cast.upper = next.cast.upper.min(known.cast.upper);
+                self.contact = Some(earlier);
             }
         }
     }
 
     /// The time from which on nothing matters.
     fn end(&self, duration: V::Scalar) -> V::Scalar {
-        let [contact, stop] = [self.contact.map(|contact| contact.upper), self.stop.map(|stop| stop.lower)];
+        let [contact, stop] = [self.contact.map(|it| it.cast.upper), self.stop.map(|it| it.cast.lower)];
         contact.into_iter().chain(stop).fold(duration, Float::min)
     }
 
     /// What is known at the end of the edge before, where that is [open](is_open_at_end) and this edge follows: where
     /// this one begins in contact, or comes to one at once, that is the contact, at the waypoint.
-    fn goes_on(&self, open: PathOutcome<V>) -> PathOutcome<V> {
-        let (PathOutcome::Contact(PathContact { edge, lower, .. })
-        | PathOutcome::Undecided(PathStop { edge, lower, .. })) = open
-        else {
-            return open;
-        };
-        match self.outcome() {
-            Some(PathOutcome::Contact(contact)) if contact.is_certain() && contact.upper < at_waypoint() => {
-                let (time, upper) = (V::Scalar::ONE, V::Scalar::ONE + contact.upper + V::Scalar::EPSILON);
-                PathOutcome::Contact(PathContact { edge, time, lower, upper, ..contact })
-            }
-            _ => open,
+    fn goes_on(&self, open: PathContact<V>) -> PathContact<V> {
+        let is_at_once = |cast: &MotionCast<V>| cast.is_certain() && cast.upper < at_waypoint();
+        let Some(mut next) = self.of_both().filter(|next| is_at_once(&next.cast)) else { return open };
+        if let Outcome::Hit(hit) = &mut next.cast.outcome {
+            hit.time = Scalar::ONE;
         }
+        (next.edge, next.cast.lower) = (open.edge, open.cast.lower);
+        next.cast.upper = V::Scalar::ONE + next.cast.upper + V::Scalar::EPSILON;
+        next
     }
 
-    /// What is known of the edge; `None` if it is free.
-    fn outcome(&self) -> Option<PathOutcome<V>> {
-        let stop = self.stop.filter(|stop| self.contact.is_none_or(|contact| stop.lower < contact.lower));
-        stop.map(PathOutcome::Undecided).or(self.contact.map(PathOutcome::Contact))
+    /// What comes first; `None` if the edge is free.
+    fn of_both(&self) -> Option<PathContact<V>> {
+        let is_first = |stop: &PathContact<V>| self.contact.is_none_or(|it| stop.cast.lower < it.cast.lower);
+        self.stop.filter(is_first).or(self.contact)
     }
 }
 
@@ -251,12 +248,6 @@ fn at_waypoint<S: Scalar>() -> S {
 }
 
 /// Whether something may be met at the end of an edge, and not before it.
-fn is_open_at_end<V: Vector>(outcome: &PathOutcome<V>) -> bool {
-    match outcome {
-        PathOutcome::Contact(contact) if contact.is_certain() => false,
-        PathOutcome::Contact(PathContact { lower, .. }) | PathOutcome::Undecided(PathStop { lower, .. }) => {
-            V::Scalar::ONE - *lower < at_waypoint()
-        }
-        PathOutcome::Free => false,
-    }
+fn is_open_at_end<V: Vector>(PathContact { cast, .. }: &PathContact<V>) -> bool {
+    !cast.is_certain() && V::Scalar::ONE - cast.lower < at_waypoint()
 }
