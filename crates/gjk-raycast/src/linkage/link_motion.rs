@@ -111,7 +111,7 @@ impl<S: Scalar> PathEdge<'_, S> {
 /// The motion of a link from a time of an edge on: from where it is in its own frame to where its joints have it.
 pub(super) struct LinkMotion<'l, V: Vector> {
     route: &'l Route<V>,
-    edge: PathEdge<'l, V::Scalar>,
+    pub(super) edge: PathEdge<'l, V::Scalar>,
     bounds: Bounds<V::Scalar>,
     start: V::Scalar,
     /// What was last computed, which is mostly asked for several times.

@@ -109,10 +109,10 @@ impl<S: SupportMap> Linkage<S> {
                 let options = options.with_max_time(duration);
                 if let Some(base) = self.skeleton.views[near.view].base {
                     let base = Body::Convex(&self.bodies[base][near.other]);
-                    self.cast(near, motion, (&base, None), edge, options, &mut first, &mut observer)?;
+                    self.cast(near, motion, (&base, None), options, &mut first, &mut observer)?;
                 } else if let Some(obstacle) = scene.get(near.other) {
                     let at = scene.tree().get(near.other).map(|around| around.center());
-                    self.cast(near, motion, (obstacle, at), edge, options, &mut first, &mut observer)?;
+                    self.cast(near, motion, (obstacle, at), options, &mut first, &mut observer)?;
                 }
                 Ok(first.end(duration))
             })?;
@@ -135,7 +135,6 @@ impl<S: SupportMap> Linkage<S> {
         near: &Near<ScalarOf<S>>,
         motion: LinkMotion<'_, S::Vector>,
         (against, at): (&Body<O>, Option<S::Vector>),
-        edge: PathEdge<'_, ScalarOf<S>>,
         options: MotionCastOptions<S::Vector>,
         first: &mut First<S::Vector>,
         observer: &mut Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
@@ -169,7 +168,7 @@ impl<S: SupportMap> Linkage<S> {
         }
         if let (Outcome::Hit(hit), Some(base)) = (&mut cast.outcome, base) {
             // It was seen from the second link.
-            let (_, frame) = edge.place(&self.skeleton.views[base].route, from + hit.time);
+            let (_, frame) = motion.edge.place(&self.skeleton.views[base].route, from + hit.time);
             (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
         }
         first.take(PathContact { edge: first.edge, link, body, met, cast }, from);

@@ -108,7 +108,7 @@ impl<'p, V: Vector> Search<'p, V> {
             bodies,
             options,
             observer,
-            base: Base::CONTACT,
+            base: Base::default(),
             acceleration: bodies.acceleration_along(plane, [zero, Scalar::ONE]),
             near,
             step: Scalar::ONE,
