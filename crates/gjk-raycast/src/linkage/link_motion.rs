@@ -115,7 +115,7 @@ pub(super) struct LinkMotion<'l, V: Vector> {
     bounds: Bounds<V::Scalar>,
     start: V::Scalar,
     /// What was last computed, which is mostly asked for several times.
-    last: Cell<(V::Scalar, (Moving<V>, LinkFrame<V>))>,
+    last: Cell<(V::Scalar, Moving<V>, LinkFrame<V>)>,
 }
 
 impl<'l, V: Vector> LinkMotion<'l, V> {
@@ -126,19 +126,19 @@ impl<'l, V: Vector> LinkMotion<'l, V> {
         bounds: Bounds<V::Scalar>,
         start: V::Scalar,
     ) -> Self {
-        let last = Cell::new((V::Scalar::nan(), (Moving::WORLD, LinkFrame::WORLD)));
+        let last = Cell::new((V::Scalar::nan(), Moving::WORLD, LinkFrame::WORLD));
         Self { route, edge, bounds, start, last }
     }
 
     /// What is at a time, as of [`PathEdge::place`].
     pub(super) fn at(&self, time: V::Scalar) -> (Moving<V>, LinkFrame<V>) {
-        let (known, placed) = self.last.get();
+        let (known, moving, frame) = self.last.get();
         if known == time {
-            return placed;
+            return (moving, frame);
         }
-        let placed = self.edge.place(self.route, self.start + time);
-        self.last.set((time, placed));
-        placed
+        let (moving, frame) = self.edge.place(self.route, self.start + time);
+        self.last.set((time, moving, frame));
+        (moving, frame)
     }
 }
 

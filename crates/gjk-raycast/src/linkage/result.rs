@@ -9,8 +9,8 @@ use crate::{Impact, MotionCast, MotionIterate, Outcome};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Path<V: Vector> {
-    /// What is met first, or may be, where its cast is undecided: rounding decides, or a limit was reached. `None` where
-    /// nothing is met, nor nearer than the target distance, at any time of the whole path. This is a proof.
+    /// What is met first, or may be, where its cast is undecided: rounding decides, or a limit was reached. `None`
+    /// where nothing is met, nor nearer than the target distance, at any time of the whole path. This is a proof.
     pub first: Option<PathContact<V>>,
     /// What was done for it.
     pub work: PathWork,
@@ -27,10 +27,10 @@ pub struct PathContact<V: Vector> {
     pub body: usize,
     /// What it meets.
     pub met: Met,
-    /// Their cast, with the normal out of what is met. Times are those of the edge, which begins at 0 and ends at 1, and
-    /// the bounds are those of all bodies: nothing is met before the lower one, and something, which may be another
-    /// body, at the upper one. That is more than 1 for a contact at the end of the edge that the next edge has shown: so
-    /// much after that one's beginning.
+    /// Their cast, with the normal out of what is met. Times are those of the edge, which begins at 0 and ends at 1,
+    /// and the bounds are those of all bodies: nothing is met before the lower one, and something, which may be another
+    /// body, at the upper one. That is more than 1 for a contact at the end of the edge that the next edge has shown:
+    /// so much after that one's beginning.
     pub cast: MotionCast<V>,
 }
 
