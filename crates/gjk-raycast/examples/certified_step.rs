@@ -12,7 +12,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{Ball, Posed, Rounded, Segment};
-use gjk_raycast::{BodyDistance, DistanceOptions, Joint, Link, Linkage, LinkageOptions, PathWorkspace, Pose, Scene};
+use gjk_raycast::{BodyDistance, DistanceOptions, Joint, Link, Linkage, MotionCastOptions, PathWorkspace, Pose, Scene};
 
 /// A bar around each link of the arm.
 type Bar = Rounded<Segment<DVec3>>;
@@ -142,7 +142,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         Filter { arm: &arm, scene: &scene, at: start, asked_at: start, near: Vec::new(), questions: 0, held: 0 };
     let (mut wished, mut rates) = ([0.0; 6], [0.0; 6]);
     let (mut moved, mut refused, mut violations) = (0, 0, 0);
-    let (options, mut workspace) = (LinkageOptions::new().with_target_distance(MARGIN - 1e-12), PathWorkspace::new());
+    let (options, mut workspace) =
+        (MotionCastOptions::new().with_target_distance(MARGIN - 1e-12), PathWorkspace::new());
     for step in 0..steps {
         // Twice a second the operator wishes to go elsewhere, and is drawn back to the start a little.
         let before = filter.at;

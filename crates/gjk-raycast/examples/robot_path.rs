@@ -8,8 +8,7 @@
 use convex_support::glam::DVec3;
 use convex_support::{Ball, Cuboid, Posed, Rounded, Segment, SupportMap};
 use gjk_raycast::{
-    HalfSpace, Joint, JointBoxOutcome, Link, Linkage, LinkageError, LinkageOptions, Path, PathOutcome, PathWorkspace,
-    Pose, Scene,
+    HalfSpace, Joint, JointBoxOutcome, Link, Linkage, LinkageError, MotionCastOptions, Path, PathWorkspace, Pose, Scene,
 };
 
 type Shape = Box<dyn SupportMap<Vector = DVec3>>;
@@ -48,7 +47,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut pairs = Vec::new();
     for pair in [[2, 0], [3, 0], [3, 1]] {
         let names = pair.map(|link| NAMES[link]);
-        match robot.joint_box(pair, &limits, LinkageOptions::new())?.outcome {
+        match robot.joint_box(pair, &limits, 0.0, 100_000)?.outcome {
             JointBoxOutcome::Never => println!("{} and {} never meet", names[0], names[1]),
             JointBoxOutcome::Meets { values, .. } => {
                 println!("{} and {} meet at {values:?}", names[0], names[1]);
@@ -68,25 +67,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut scene = Scene::new([post])?;
     scene.insert_half_space(HalfSpace::new(DVec3::Z, -0.001)?);
 
-    let options = LinkageOptions::new().with_target_distance(0.0005);
+    let options = MotionCastOptions::new().with_target_distance(0.0005);
     let mut workspace = PathWorkspace::new();
     let mut ask =
         |ways: &[[f64; 4]]| -> Result<Path<DVec3>, LinkageError> { robot.path(ways, &scene, options, &mut workspace) };
     let [from, to] = [[-1.0, -0.2, 0.6, 0.2], [1.0, -0.2, 0.6, 0.2]];
-    let contact = ask(&[from, to])?.contact().ok_or("the post is in the way")?;
-    let (edge, link, time) = (contact.edge, NAMES[contact.link], contact.time);
+    let (contact, hit) = ask(&[from, to])?.contact().ok_or("the post is in the way")?;
+    let (edge, link, time, cast) = (contact.edge, NAMES[contact.link], hit.time, contact.cast);
     println!("straight on: the {link} meets {:?} at {time:.12} of edge {edge}", contact.met);
-    assert!(contact.is_certain() && contact.upper - contact.lower < 1e-12, "{contact:?}");
+    assert!(cast.is_certain() && cast.upper - cast.lower < 1e-12, "{contact:?}");
     // Up to there it is free, and a little later it is not.
     let until = |time: f64| [from, [0, 1, 2, 3].map(|j| from[j] + time * (to[j] - from[j]))];
-    assert!(
-        ask(&until(contact.lower - 1e-9))?.is_free() && !ask(&until(contact.upper + 1e-9))?.is_free(),
-        "{contact:?}"
-    );
+    assert!(ask(&until(cast.lower - 1e-9))?.is_free() && !ask(&until(cast.upper + 1e-9))?.is_free(), "{contact:?}");
 
     let above = |turn: f64| [turn, -1.2, 0.6, 0.0];
     let around = ask(&[from, above(-1.0), above(1.0), to])?;
-    println!("around it: {:?}, by {} casts", around.outcome, around.work.casts);
-    assert!(matches!(around.outcome, PathOutcome::Free), "{around:?}");
+    println!("around it: {:?}, by {} casts", around.first, around.work.casts);
+    assert!(around.is_free(), "{around:?}");
     Ok(())
 }

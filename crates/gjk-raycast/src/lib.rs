@@ -134,7 +134,6 @@ mod curvature;
 #[cfg(feature = "serde")]
 mod data;
 mod derivative;
-mod displaced;
 mod distance;
 mod distances;
 mod double;
@@ -188,8 +187,8 @@ pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{linear_cast, linear_cast_with};
 pub use linkage::{
-    FreeBox, FreeInterval, Joint, JointBox, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions,
-    Met, Path, PathContact, PathOutcome, PathStop, PathWork, PathWorkspace,
+    FreeBox, FreeInterval, Joint, JointBox, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, Met, Path,
+    PathContact, PathWork, PathWorkspace,
 };
 pub use motion::{
     ChainMotion, Displacement, MotionCastOptions, MotionIterate, MovingBall, Pose, RigidMotion, Trajectory,

@@ -8,8 +8,8 @@ use convex_support::{
     Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap, support_value,
 };
 use gjk_raycast::{
-    Body, HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions, Met, Path,
-    PathOutcome, PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
+    Body, HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, Met, MotionCastOptions, Path,
+    PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
 };
 
 type Bar = Rounded<Segment<DVec2>>;
@@ -36,7 +36,7 @@ fn ball_at(x: f64, y: f64) -> Posed<Ball<DVec2>> {
 }
 
 fn ask(robot: &Linkage<Bar>, ways: &[Vec<f64>], scene: &Scene<Posed<Ball<DVec2>>>) -> Path<DVec2> {
-    robot.path(ways, scene, LinkageOptions::new(), &mut PathWorkspace::new()).expect("values for its joints")
+    robot.path(ways, scene, MotionCastOptions::new(), &mut PathWorkspace::new()).expect("values for its joints")
 }
 
 /// A stretched arm that turns from an angle on meets a ball on its way when its middle line is 0.15 from the ball's
@@ -49,13 +49,13 @@ fn first_contacts_of_an_arm_are_those_of_its_closed_form() {
         let (angle, far) = (0.6 + 0.1 * f64::from(k), 0.4 + 0.12 * f64::from(k));
         let scene = Scene::new([ball_at(far * angle.cos(), far * angle.sin())]).expect("finite");
         let ways = [[-0.4, 0.0], [0.0, 0.0], [2.0, 0.0], [0.0, 0.0]];
-        let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut workspace).expect("two values each");
-        let contact = path.contact().expect("it turns by 2");
+        let path = robot.path(&ways, &scene, MotionCastOptions::new(), &mut workspace).expect("two values each");
+        let (contact, hit) = path.contact().expect("it turns by 2");
         let truth = (angle - (0.15 / far).asin()) / 2.0;
         assert_eq!((contact.edge, contact.link, contact.met), (1, usize::from(far > 1.0), Met::Obstacle(0)), "{far}");
-        assert!(contact.lower <= truth && truth <= contact.upper, "{truth} is not in {contact:?}");
-        assert!(contact.upper - contact.lower < 1e-12 && (contact.time - truth).abs() < 1e-13, "{contact:?}");
-        assert!((contact.point - DVec2::from_angle(angle) * far).length() - 0.1 < 1e-12, "{contact:?}");
+        assert!(contact.cast.lower <= truth && truth <= contact.cast.upper, "{truth} is not in {contact:?}");
+        assert!(contact.cast.upper - contact.cast.lower < 1e-12 && (hit.time - truth).abs() < 1e-13, "{contact:?}");
+        assert!((hit.point - DVec2::from_angle(angle) * far).length() - 0.1 < 1e-12, "{contact:?}");
         assert_eq!(path, ask(&robot, &ways.map(Vec::from), &scene), "a workspace remembers nothing");
         // Short of the ball by 1e-9 it is free.
         assert!(ask(&robot, &[vec![0.0, 0.0], vec![2.0 * truth - 1e-9, 0.0]], &scene).is_free(), "{far}");
@@ -72,22 +72,24 @@ fn links_of_one_robot_meet_one_another() {
     for (pair, sign) in [([2, 0], 1.0), ([0, 2], -1.0)] {
         let chain = chain.clone().with_pairs([pair]).expect("two links");
         let path = ask(&chain, &[vec![0.0; 2], vec![2.5; 2]], &nothing);
-        let contact = path.contact().expect("the ends come together at 120°");
+        let (contact, hit) = path.contact().expect("the ends come together at 120°");
         let (alpha, truth) = ((-0.45_f64).acos(), (-0.45_f64).acos() / 2.5);
         assert!(
-            contact.lower <= truth && truth <= contact.upper && contact.upper - contact.lower < 1e-12,
+            contact.cast.lower <= truth
+                && truth <= contact.cast.upper
+                && contact.cast.upper - contact.cast.lower < 1e-12,
             "{contact:?}"
         );
         assert_eq!((contact.link, contact.met), (pair[0], Met::Link { link: pair[1], body: 0 }), "in the order asked");
         let end = DVec2::X + DVec2::from_angle(alpha) + DVec2::from_angle(2.0 * alpha);
-        assert!((contact.point - end * 0.5).length() < 1e-12, "halfway between the ends: {contact:?}");
-        let normal = contact.normal.expect("they were apart");
+        assert!((hit.point - end * 0.5).length() < 1e-12, "halfway between the ends: {contact:?}");
+        let normal = hit.normal.expect("they were apart");
         assert!((normal - end.normalize() * sign).length() < 1e-12, "out of the second, in the world: {contact:?}");
         assert!(ask(&chain, &[vec![0.0; 2], vec![alpha - 1e-9; 2]], &nothing).is_free(), "{pair:?}");
-        let near = LinkageOptions::new().with_target_distance(0.1);
+        let near = MotionCastOptions::new().with_target_distance(0.1);
         let sooner = chain.path(&[[0.0; 2], [2.0; 2]], &nothing, near, &mut PathWorkspace::new()).expect("valid");
         let truth = (-0.4_f64).acos() / 2.0;
-        assert!(sooner.contact().is_some_and(|c| (c.time - truth).abs() < 1e-13), "{sooner:?}");
+        assert!(sooner.contact().is_some_and(|(_, hit)| (hit.time - truth).abs() < 1e-13), "{sooner:?}");
     }
     assert!(ask(&chain, &[vec![0.0; 2], vec![2.5; 2]], &nothing).is_free(), "none is asked about another");
 }
@@ -100,10 +102,13 @@ fn two_robots_meet_one_another() {
     let links = [0, 1].map(|joint| Link { joint: Some(joint), bodies: vec![bar()] });
     let gate = Linkage::new(joints, links).expect("a linkage").with_pairs([[0, 1]]).expect("two links");
     let path = ask(&gate, &[vec![1.2, PI - 1.2], vec![0.0, PI]], &Scene::default());
-    let (contact, truth) = (path.contact().expect("they meet"), (1.2 - 0.85_f64.acos()) / 1.2);
+    let ((contact, hit), truth) = (path.contact().expect("they meet"), (1.2 - 0.85_f64.acos()) / 1.2);
     assert_eq!((contact.link, contact.met), (0, Met::Link { link: 1, body: 0 }), "{contact:?}");
-    assert!(contact.lower <= truth && truth <= contact.upper && contact.upper - contact.lower < 1e-12, "{contact:?}");
-    assert!((contact.point - DVec2::new(0.9, (1.0_f64 - 0.85 * 0.85).sqrt())).length() < 1e-12, "{contact:?}");
+    assert!(
+        contact.cast.lower <= truth && truth <= contact.cast.upper && contact.cast.upper - contact.cast.lower < 1e-12,
+        "{contact:?}"
+    );
+    assert!((hit.point - DVec2::new(0.9, (1.0_f64 - 0.85 * 0.85).sqrt())).length() < 1e-12, "{contact:?}");
 }
 
 #[cfg(feature = "rayon")]
@@ -112,7 +117,7 @@ fn paths_on_threads_are_answered_as_one_by_one() {
     let (robot, scene) = (arm(), Scene::new([ball_at(1.0, 1.0)]).expect("finite"));
     let paths: Vec<_> = (0..40).map(|k| vec![vec![0.0, 0.0], vec![0.05 * f64::from(k), 0.3]]).collect();
     let alone: Vec<_> = paths.iter().map(|path| Ok(ask(&robot, path, &scene))).collect();
-    assert_eq!(robot.par_paths(&paths, &scene, LinkageOptions::new()), alone, "in the same order");
+    assert_eq!(robot.par_paths(&paths, &scene, MotionCastOptions::new()), alone, "in the same order");
 }
 
 /// What slides, in a frame that is turned, towards a wall.
@@ -123,19 +128,22 @@ fn a_joint_slides_along_its_axis() -> Result<(), Box<dyn std::error::Error>> {
     let robot = Linkage::new(joints, [Link { joint: Some(1), bodies: vec![Ball::new(0.5)?] }])?;
     let mut scene = Scene::<Ball<DVec3>>::default();
     let wall = scene.insert_half_space(HalfSpace::new(DVec3::NEG_X, -3.0)?);
-    let path = robot.path(&[[0.0], [1.0], [5.0]], &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
-    let contact = path.contact().ok_or("it comes to 2.5")?;
+    let path = robot.path(&[[0.0], [1.0], [5.0]], &scene, MotionCastOptions::new(), &mut PathWorkspace::new())?;
+    let (contact, hit) = path.contact().ok_or("it comes to 2.5")?;
     assert_eq!((contact.edge, contact.met), (1, Met::Obstacle(wall)), "{contact:?}");
-    assert!(contact.lower <= 0.375 && 0.375 <= contact.upper && contact.upper - contact.lower < 1e-13, "{contact:?}");
-    assert!((contact.point - DVec3::new(3.0, 1.0, 0.0)).length() < 1e-13, "{contact:?}");
+    assert!(
+        contact.cast.lower <= 0.375 && 0.375 <= contact.cast.upper && contact.cast.upper - contact.cast.lower < 1e-13,
+        "{contact:?}"
+    );
+    assert!((hit.point - DVec3::new(3.0, 1.0, 0.0)).length() < 1e-13, "{contact:?}");
     Ok(())
 }
 
 #[test]
 fn a_path_of_one_waypoint_is_a_pose() {
     let (robot, scene) = (arm(), Scene::new([ball_at(1.0, 1.0)]).expect("finite"));
-    let contact = ask(&robot, &[vec![FRAC_PI_4, 0.0]], &scene).contact().expect("the ball is in the forearm");
-    assert_eq!((contact.edge, contact.time, contact.link, contact.normal), (0, 0.0, 1, None), "{contact:?}");
+    let (contact, hit) = ask(&robot, &[vec![FRAC_PI_4, 0.0]], &scene).contact().expect("the ball is in the forearm");
+    assert_eq!((contact.edge, hit.time, contact.link, hit.normal), (0, 0.0, 1, None), "{contact:?}");
     assert!(ask(&robot, &[vec![0.0, 0.0]], &scene).is_free());
     let still = ask(&robot, &vec![vec![0.3, 0.0]; 3], &scene);
     assert!(still.is_free(), "it may also rest for two edges: {still:?}");
@@ -223,7 +231,7 @@ fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(
         let size = [0.3, 1.0, 4.0][(random(&mut seed) * 3.0) as usize];
         let ways =
             [0; 3].map(|_| (0..robot.values()).map(|_| size * (2.0 * random(&mut seed) - 1.0)).collect::<Vec<_>>());
-        let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
+        let path = robot.path(&ways, &scene, MotionCastOptions::new(), &mut PathWorkspace::new())?;
         // The least signed distance at a time.
         let least = |edge: usize, time: f64| -> Result<f64, InvalidShape> {
             let values: Vec<f64> = ways[edge].iter().zip(&ways[edge + 1]).map(|(a, b)| a + time * (b - a)).collect();
@@ -248,11 +256,7 @@ fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(
             }
             Ok(least)
         };
-        let proved = match path.outcome {
-            PathOutcome::Free => (1, 1.0),
-            PathOutcome::Contact(contact) => (contact.edge, contact.lower),
-            PathOutcome::Undecided(stop) => (stop.edge, stop.lower),
-        };
+        let proved = path.first.map_or((1, 1.0), |first| (first.edge, first.cast.lower));
         for k in 0..20 {
             for (edge, end) in
                 [(0, if proved.0 == 0 { proved.1 } else { 1.0 }), (1, if proved.0 == 0 { 0.0 } else { proved.1 })]
@@ -263,9 +267,9 @@ fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(
             }
         }
         match path.contact() {
-            Some(contact) => {
+            Some((contact, _)) => {
                 contacts += 1;
-                assert!(least(contact.edge, contact.upper)? < 1e-12, "{path:?}");
+                assert!(least(contact.edge, contact.cast.upper)? < 1e-12, "{path:?}");
             }
             None => free += usize::from(path.is_free()),
         }
@@ -280,7 +284,7 @@ fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Erro
     let joints = [turning(None, DVec2::X), turning(Some(0), DVec2::X)];
     let links = [None, Some(0), Some(1)].map(|joint| Link { joint, bodies: vec![bar()] });
     let chain = Linkage::new(joints, links)?;
-    let ask = |half: f64| chain.joint_box([2, 0], &[[-half, half]; 2], LinkageOptions::new());
+    let ask = |half: f64| chain.joint_box([2, 0], &[[-half, half]; 2], 0.0, 100_000);
     assert_eq!(ask(1.5)?.outcome, JointBoxOutcome::Never);
     let JointBoxOutcome::Meets { values, bodies } = ask(2.1)?.outcome else { return Err("they may meet".into()) };
     assert_eq!(bodies, [0, 0]);
@@ -291,7 +295,7 @@ fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Erro
     // No wider interval is free, and none that is free has a pose that is not.
     let mut seed = 7;
     let (limits, mut met) = ([[-1.9, 1.9], [-1.9, 2.4]], 0);
-    let found = chain.joint_box([2, 0], &limits, LinkageOptions::new())?;
+    let found = chain.joint_box([2, 0], &limits, 0.0, 100_000)?;
     for _ in 0..500 {
         let values = limits.map(|[low, high]: [f64; 2]| low + (high - low) * random(&mut seed)).to_vec();
         met += usize::from(!ask_own(&own, &values).is_free());
@@ -299,17 +303,17 @@ fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Erro
     assert_eq!(met > 0, matches!(found.outcome, JointBoxOutcome::Meets { .. }), "{met} poses, {found:?}");
 
     // A search that is cut short says how much of the box is open.
-    let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], LinkageOptions::new().with_max_boxes(9))?;
+    let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], 0.0, 9)?;
     assert!(matches!(cut.outcome, JointBoxOutcome::Undecided { share } if share > 0.0 && share < 1.0), "{cut:?}");
     // However few, at least one part is looked at, and none is lost.
     for most in 0..4 {
-        let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], LinkageOptions::new().with_max_boxes(most))?;
+        let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], 0.0, most)?;
         let JointBoxOutcome::Undecided { share } = cut.outcome else { return Err("not by so few".into()) };
         assert!(share > 0.0 && cut.boxes <= most + 1, "{most}: {cut:?}");
     }
     // Of no extent, the box is a pose.
     let pose = [[0.0, 0.0], [0.0, 0.0]];
-    let touching = chain.joint_box([1, 0], &pose, LinkageOptions::new().with_max_boxes(100))?;
+    let touching = chain.joint_box([1, 0], &pose, 0.0, 100)?;
     assert!(matches!(touching.outcome, JointBoxOutcome::Meets { .. }), "neighbours overlap: {touching:?}");
     Ok(())
 }
@@ -326,13 +330,13 @@ fn where_links_almost_meet_does_not_hide_where_they_do() -> Result<(), Box<dyn s
         let hand = vec![ball(0.2 - short, DVec2::X * -0.3)?, ball(0.201, aside)?];
         let joints = [turning(None, DVec2::ZERO), turning(Some(0), DVec2::X)];
         let robot = Linkage::new(joints, [post.clone(), Link { joint: Some(1), bodies: hand }])?;
-        let answer = robot.joint_box([1, 0], &[[-1.0, 1.0]; 2], LinkageOptions::new())?;
+        let answer = robot.joint_box([1, 0], &[[-1.0, 1.0]; 2], 0.0, 100_000)?;
         assert!(matches!(answer.outcome, JointBoxOutcome::Meets { bodies: [1, 0], .. }), "{answer:?}");
         assert!(answer.boxes < 100, "{answer:?}");
     }
     let hand = Link { joint: Some(0), bodies: vec![ball(0.5, DVec2::X)?] };
     let touching = Linkage::new([turning(None, DVec2::ZERO)], [post, hand])?;
-    let answer = touching.joint_box([1, 0], &[[0.25; 2]], LinkageOptions::new())?;
+    let answer = touching.joint_box([1, 0], &[[0.25; 2]], 0.0, 100_000)?;
     assert_eq!((answer.outcome, answer.boxes), (JointBoxOutcome::Undecided { share: 1.0 }, 1), "nothing can be halved");
     Ok(())
 }
@@ -361,7 +365,7 @@ fn what_is_no_linkage_or_path_is_refused_by_its_index() -> Result<(), Box<dyn st
 
     let scene = Scene::<Bar>::default();
     let refused = |ways: &[Vec<f64>], options| arm().path(ways, &scene, options, &mut PathWorkspace::new()).err();
-    let options = LinkageOptions::new();
+    let options = MotionCastOptions::new();
     assert_eq!(refused(&[], options), Some(LinkageError::EmptyPath));
     let short = LinkageError::Count { waypoint: 1, joints: 2, values: 1 };
     assert_eq!(refused(&[vec![0.0; 2], vec![1.0]], options), Some(short));
@@ -374,7 +378,7 @@ fn what_is_no_linkage_or_path_is_refused_by_its_index() -> Result<(), Box<dyn st
         "{option}"
     );
 
-    let boxes = |limits: &[[f64; 2]]| arm().joint_box([0, 1], limits, LinkageOptions::new()).err();
+    let boxes = |limits: &[[f64; 2]]| arm().joint_box([0, 1], limits, 0.0, 100_000).err();
     assert_eq!(boxes(&[[0.0, 1.0], [1.0, 0.5]]), Some(LinkageError::Interval { value: 1 }));
     assert_eq!(boxes(&[[0.0, 1.0]]), Some(LinkageError::Count { waypoint: 0, joints: 2, values: 1 }));
     assert_eq!(boxes(&[[0.0, 1.0], [0.0, f64::NAN]]), Some(LinkageError::Value { waypoint: 0, value: 1 }));
@@ -406,12 +410,15 @@ fn a_contact_at_the_end_of_a_part_is_one() -> Result<(), Box<dyn std::error::Err
     scene.insert_half_space(HalfSpace::new(DVec3::NEG_X * 2.0, -6.0)?);
     for (part, target) in [(0.25, 0.5), (0.5, 0.5), (0.75, 0.5), (0.125, 0.0), (0.625, 0.25)] {
         // The ball touches the wall, or comes as near as the target, when its middle is there.
-        let (end, wanted) = (2.5 - target, LinkageOptions::new().with_target_distance(target));
+        let (end, wanted) = (2.5 - target, MotionCastOptions::new().with_target_distance(target));
         let ways = [[end - 4.0 * part], [end + 4.0 * (1.0 - part)]];
         let path = robot.path(&ways, &scene, wanted, &mut PathWorkspace::new())?;
-        let contact = path.contact().ok_or("it is decided")?;
-        assert!(contact.lower <= part && part <= contact.upper && contact.is_certain(), "{part}: {contact:?}");
-        assert!(contact.upper - contact.lower < 1e-13, "{part}: {contact:?}");
+        let (contact, _) = path.contact().ok_or("it is decided")?;
+        assert!(
+            contact.cast.lower <= part && part <= contact.cast.upper && contact.cast.is_certain(),
+            "{part}: {contact:?}"
+        );
+        assert!(contact.cast.upper - contact.cast.lower < 1e-13, "{part}: {contact:?}");
     }
     Ok(())
 }
@@ -427,21 +434,21 @@ fn a_contact_at_a_waypoint_is_one() -> Result<(), Box<dyn std::error::Error>> {
     let mut scene = Scene::new([Posed::translated(Ball::new(0.3)?, DVec3::new(2.9, 0.0, 0.0))?])?;
     let wall = scene.insert_half_space(HalfSpace::new(DVec3::NEG_X * 2.0, -6.0)?);
     let ask = |ways: &[[f64; 1]], target: f64| {
-        let options = LinkageOptions::new().with_target_distance(target);
+        let options = MotionCastOptions::new().with_target_distance(target);
         robot.path(ways, &scene, options, &mut PathWorkspace::new())
     };
     for target in [0.0, 0.25, 0.1] {
         let end = 2.1 - target;
         for (ways, edge) in [(vec![[0.0], [end], [3.0]], 0), (vec![[-1.0], [-0.5], [end], [end + 1.0], [end]], 1)] {
-            let contact = ask(&ways, target)?.contact().ok_or("it is decided")?;
+            let (contact, hit) = ask(&ways, target)?.contact().ok_or("it is decided")?;
             assert_eq!((contact.edge, contact.met), (edge, Met::Obstacle(0)), "before the wall {wall}: {contact:?}");
-            assert!(contact.lower <= 1.0 && 1.0 <= contact.upper && contact.is_certain(), "{contact:?}");
-            assert!(contact.upper - contact.lower < 1e-12 && contact.time == 1.0, "{contact:?}");
+            assert!(contact.cast.lower <= 1.0 && 1.0 <= contact.cast.upper && contact.cast.is_certain(), "{contact:?}");
+            assert!(contact.cast.upper - contact.cast.lower < 1e-12 && hit.time == 1.0, "{contact:?}");
         }
         // One that only touches there stays undecided, as nobody can know it, and what comes later is not taken for it.
         let touching = ask(&[[0.0], [end], [0.0], [3.0]], target)?;
         assert!(!touching.is_free(), "{touching:?}");
-        assert!(touching.contact().is_none_or(|contact| contact.edge == 0), "{touching:?}");
+        assert!(touching.contact().is_none_or(|(contact, _)| contact.edge == 0), "{touching:?}");
     }
     Ok(())
 }
@@ -462,19 +469,19 @@ fn the_time_of_a_contact_is_derived_by_the_waypoints() -> Result<(), Box<dyn std
         (&chain, ways(&[0.1, 0.2, 0.0], &[1.9, 1.6, 2.3]), &Scene::default()),
     ];
     for (robot, ways, scene) in cases {
-        let options = LinkageOptions::new().with_target_distance(0.02);
+        let options = MotionCastOptions::new().with_target_distance(0.02);
         let time = |ways: &[Vec<f64>]| -> Result<_, LinkageError> {
             let path = robot.path(ways, scene, options, &mut PathWorkspace::new())?;
             Ok(path.contact())
         };
-        let contact = time(&ways)?.ok_or("it is on its way")?;
+        let (contact, _) = time(&ways)?.ok_or("it is on its way")?;
         assert_eq!(matches!(contact.met, Met::Link { .. }), scene.is_empty(), "{contact:?}");
         let gradient = robot.time_gradient(&ways, &contact).ok_or("it comes nearer")?;
         for (k, end) in (0..robot.values()).flat_map(|k| [(k, 0), (k, 1)]) {
             let at = |step: f64| {
                 let mut ways = ways.clone();
                 ways[end][k] += step;
-                time(&ways).map(|contact| contact.map_or(f64::NAN, |contact| contact.time))
+                time(&ways).map(|contact| contact.map_or(f64::NAN, |(_, hit)| hit.time))
             };
             let difference = (at(1e-6)? - at(-1e-6)?) / 2e-6;
             let derivative = gradient[k][end];
@@ -491,19 +498,20 @@ fn the_time_of_a_contact_is_derived_by_the_waypoints() -> Result<(), Box<dyn std
 fn a_path_is_asked_until_a_time() -> Result<(), Box<dyn std::error::Error>> {
     let (robot, scene) = (arm(), Scene::new([ball_at(1.0, 1.0)])?);
     let ways = [[-1.0, 0.0], [0.0, 0.0], [2.0, 0.0]];
-    let ask =
-        |until: f64| robot.path(&ways, &scene, LinkageOptions::new().with_max_time(until), &mut PathWorkspace::new());
-    let contact = ask(f64::INFINITY)?.contact().ok_or("it turns past the ball")?;
+    let ask = |until: f64| {
+        robot.path(&ways, &scene, MotionCastOptions::new().with_max_time(until), &mut PathWorkspace::new())
+    };
+    let (contact, hit) = ask(f64::INFINITY)?.contact().ok_or("it turns past the ball")?;
     assert_eq!(contact.edge, 1);
-    let at = 1.0 + contact.time;
+    let at = 1.0 + hit.time;
     for until in [-1.0, 0.0, 0.5, 1.0, at - 1e-9] {
         assert!(ask(until)?.is_free(), "{until}");
     }
     for until in [at + 1e-9, 1.9, 2.0, 7.0] {
-        let sooner = ask(until)?.contact().ok_or("it is met before")?;
-        assert!(sooner.is_certain() && (sooner.time - contact.time).abs() < 1e-13, "{until}: {sooner:?}");
+        let (sooner, there) = ask(until)?.contact().ok_or("it is met before")?;
+        assert!(sooner.cast.is_certain() && (there.time - hit.time).abs() < 1e-13, "{until}: {sooner:?}");
     }
-    assert!(ask(at)?.contact().is_none_or(|contact| !contact.is_certain()), "rounding decides");
+    assert!(ask(at)?.contact().is_none_or(|(contact, _)| !contact.cast.is_certain()), "rounding decides");
     assert!(matches!(ask(f64::NAN), Err(LinkageError::Option(_))), "no time");
     Ok(())
 }
@@ -517,7 +525,7 @@ fn the_planes_of_a_free_path_are_shown() {
     scene.insert_half_space(HalfSpace::new(DVec2::Y, -1.0).expect("a normal"));
     let ways = [[0.0, 0.2], [0.0, 2.6], [1.5, 2.6], [1.5, 0.2]];
     let (mut shown, mut workspace) = (Vec::new(), PathWorkspace::new());
-    let path = robot.path_with(&ways, &scene, LinkageOptions::new(), &mut workspace, |part| shown.push(part));
+    let path = robot.path_with(&ways, &scene, MotionCastOptions::new(), &mut workspace, |part| shown.push(part));
     assert!(path.is_ok_and(|path| path.is_free()), "bent, it passes the first ball");
     for (edge, link, other) in (0..24).map(|k| (k / 8, k / 4 % 2, k % 4)) {
         let met = Met::Obstacle(other);
@@ -581,11 +589,11 @@ fn brackets_hold_in_single_precision() -> Result<(), Box<dyn std::error::Error>>
         let (x, y) = (0.75 - 0.0625 * f32::from(k), 0.5 + 0.125 * f32::from(k));
         let scene = Scene::new([Posed::translated(Ball::new(0.125)?, Vec2::new(x, y))?])?;
         let ways = [[-0.5, 0.0], [2.5, 0.0]];
-        let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
-        let contact = path.contact().ok_or("it turns past the ball")?;
+        let path = robot.path(&ways, &scene, MotionCastOptions::new(), &mut PathWorkspace::new())?;
+        let (contact, _) = path.contact().ok_or("it turns past the ball")?;
         let (x, y) = (f64::from(x), f64::from(y));
         let truth = (y.atan2(x) - (0.1875 / x.hypot(y)).asin() + 0.5) / 3.0;
-        let [lower, upper] = [contact.lower, contact.upper].map(f64::from);
+        let [lower, upper] = [contact.cast.lower, contact.cast.upper].map(f64::from);
         assert!(lower <= truth && truth <= upper && upper - lower < 1e-4, "{truth} is not in {contact:?}");
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! `joint_box`.
 
 use convex_support::Vector;
-use gjk_raycast::{FreeBox, JointBoxOutcome, Linkage, LinkageOptions};
+use gjk_raycast::{FreeBox, JointBoxOutcome, Linkage};
 
 use super::{Ask, How, Query, Question, meeting, scalar};
 use crate::wire::answer::{Answer, Field, Number};
@@ -10,6 +10,9 @@ use crate::wire::fields::Fields;
 use crate::wire::linkage::{self, problem};
 use crate::wire::names::Names;
 use crate::wire::shape::{Solid, Space};
+
+/// Parts of a box to look at, after which to give up.
+const MAX_BOXES: usize = 100_000;
 
 /// The query as written.
 pub(super) struct JointBox {
@@ -37,7 +40,7 @@ impl Query for JointBox {
             robot: self.robot.build(how.meshes)?,
             pair: self.pair,
             intervals: self.intervals.iter().map(|ends| ends.map(scalar::<V>)).collect(),
-            options: LinkageOptions::new().with_target_distance(scalar::<V>(self.target_distance)),
+            target_distance: scalar::<V>(self.target_distance),
         }))
     }
 }
@@ -46,14 +49,14 @@ struct Ever<V: Vector> {
     robot: Linkage<Solid<V>>,
     pair: [usize; 2],
     intervals: Vec<[V::Scalar; 2]>,
-    options: LinkageOptions<V>,
+    target_distance: V::Scalar,
 }
 
 impl<V: Space> Question for Ever<V> {
     type Solution = gjk_raycast::JointBox<V::Scalar>;
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
-        self.robot.joint_box(self.pair, &self.intervals, self.options).map_err(problem)
+        self.robot.joint_box(self.pair, &self.intervals, self.target_distance, MAX_BOXES).map_err(problem)
     }
 
     fn prove(&self) -> Result<(Self::Solution, Option<Answer>), Problem> {
@@ -66,7 +69,10 @@ impl<V: Space> Question for Ever<V> {
                 .with("box", Field::Rows(intervals));
             free.push(part.with("plane", Field::vector(normal)));
         };
-        let solution = self.robot.joint_box_with(self.pair, &self.intervals, self.options, show).map_err(problem)?;
+        let solution = self
+            .robot
+            .joint_box_with(self.pair, &self.intervals, self.target_distance, MAX_BOXES, show)
+            .map_err(problem)?;
         let met = match &solution.outcome {
             JointBoxOutcome::Meets { values, bodies } => {
                 let placed = |end: usize| self.robot.placed(self.pair[end], bodies[end], values).map_err(problem);

@@ -4,9 +4,7 @@ use convex_support::glam::{DVec2, DVec3};
 use convex_support::{Scalar as _, Vector};
 #[cfg(not(target_family = "wasm"))]
 use cpu_time::ThreadTime;
-use gjk_raycast::{
-    FreeInterval, Linkage, LinkageOptions, Met, PathContact, PathOutcome, PathStop, PathWorkspace, Scene,
-};
+use gjk_raycast::{FreeInterval, Linkage, Met, MotionCastOptions, PathContact, PathWorkspace, Scene};
 #[cfg(target_family = "wasm")]
 use std::time::Instant as ThreadTime;
 
@@ -57,7 +55,7 @@ impl Path {
         how.method(&[("gjk", ())])?;
         let build = |(i, body): (usize, &Body)| body.build(&format!("obstacles[{i}]"), how.meshes);
         let obstacles = self.obstacles.iter().enumerate().map(build).collect::<Result<Vec<_>, _>>()?;
-        let mut options = LinkageOptions::new().with_target_distance(scalar::<V>(self.target_distance));
+        let mut options = MotionCastOptions::new().with_target_distance(scalar::<V>(self.target_distance));
         options.tolerance = how.tolerance::<V>()?.unwrap_or(options.tolerance);
         let pairs = self.pairs.iter().copied();
         Ok(Way {
@@ -73,7 +71,7 @@ struct Way<V: Vector> {
     robot: Linkage<Solid<V>>,
     scene: Scene<Solid<V>>,
     waypoints: Vec<Vec<V::Scalar>>,
-    options: LinkageOptions<V>,
+    options: MotionCastOptions<V>,
 }
 
 impl<V: Space> Question for Way<V> {
@@ -98,7 +96,7 @@ impl<V: Space> Question for Way<V> {
         let mut workspace = PathWorkspace::new();
         let path = self.robot.path_with(&self.waypoints, &self.scene, self.options, &mut workspace, show);
         let path = path.map_err(problem)?;
-        let met = path.contact().and_then(|contact| self.met(&contact)).unwrap_or_default();
+        let met = path.contact().and_then(|(contact, _)| self.met(&contact)).unwrap_or_default();
         Ok((path, Some(met.with("free", Field::Answers(free)))))
     }
 
@@ -109,29 +107,30 @@ impl<V: Space> Question for Way<V> {
 
     fn answer(&self, path: Self::Solution) -> Result<Answer, Problem> {
         let answer = |free| Answer::default().with("free", Field::Flag(free));
-        let answer = match path.outcome {
-            PathOutcome::Free => answer(true).with("certain", Field::Flag(true)),
-            PathOutcome::Contact(contact) => {
+        let answer = match (path.contact(), path.first) {
+            (Some((contact, hit)), _) => {
                 let answer = answer(false)
                     .with("edge", Field::Count(contact.edge))
-                    .with("time", Field::number(contact.time))
+                    .with("time", Field::number(hit.time))
                     .with("link", Field::Count(contact.link))
                     .with("body", Field::Count(contact.body));
                 of_what(answer, contact.met)
-                    .with("point", Field::vector(contact.point))
-                    .with("normal", Field::maybe_vector(contact.normal))
-                    .with_finite("lower", contact.lower)
-                    .with_finite("upper", contact.upper)
-                    .with_certain([contact.lower, contact.upper])
-                    .with("status", status(contact.status))
+                    .with("point", Field::vector(hit.point))
+                    .with("normal", Field::maybe_vector(hit.normal))
+                    .with_finite("lower", contact.cast.lower)
+                    .with_finite("upper", contact.cast.upper)
+                    .with_certain([contact.cast.lower, contact.cast.upper])
+                    .with("status", status(contact.cast.status))
             }
-            PathOutcome::Undecided(PathStop { edge, lower, link, body, .. }) => {
+            (None, Some(PathContact { edge, link, body, cast, .. })) => {
                 let message = format!(
-                    "the path is free until {lower} of edge {edge}; whether body {body} of link {link} meets something \
-                     from there on is not certain"
+                    "the path is free until {} of edge {edge}; whether body {body} of link {link} meets something \
+                     from there on is not certain",
+                    cast.lower
                 );
                 return Err(Problem::new(Kind::NotConverged, message));
             }
+            (None, None) => answer(true).with("certain", Field::Flag(true)),
         };
         Ok(answer.with("casts", Field::Count(path.work.casts)))
     }
@@ -140,10 +139,10 @@ impl<V: Space> Question for Way<V> {
 impl<V: Space> Way<V> {
     /// What proves that the bodies of a contact meet at the end of its bracket, if it has one. A half-space needs no
     /// proof.
-    fn met(&self, &PathContact { edge, upper, link, body, met, .. }: &PathContact<V>) -> Option<Answer> {
+    fn met(&self, &PathContact { edge, link, body, met, cast }: &PathContact<V>) -> Option<Answer> {
         // A contact at a waypoint may be one that the next edge has shown.
         let one = V::Scalar::ONE;
-        let (edge, time) = if upper > one { (edge + 1, upper - one) } else { (edge, upper) };
+        let (edge, time) = if cast.upper > one { (edge + 1, cast.upper - one) } else { (edge, cast.upper) };
         let [from, to] = [edge, edge + 1].map(|end| &self.waypoints[end.min(self.waypoints.len() - 1)]);
         let values: Vec<_> = from.iter().zip(to).map(|(&from, &to)| from + (to - from) * time).collect();
         let placed = |link, body| self.robot.placed(link, body, &values).ok();
@@ -212,7 +211,7 @@ pub fn picture(object: &Object, meshes: &Meshes) -> Result<Option<(String, bool)
     }
     let way = query.way::<DVec3>(&How { precision: Precision::F64, tol: None, method: None, meshes })?;
     let contact = way.solve()?.contact();
-    let svg = path_picture::svg(&way.robot, &way.scene, &way.waypoints, contact.as_ref());
+    let svg = path_picture::svg(&way.robot, &way.scene, &way.waypoints, contact);
     Ok(svg.map(|svg| (svg, contact.is_some())))
 }
 
@@ -230,10 +229,10 @@ impl<V: Space<Scalar = f64>> Way<V> {
                 std::hint::black_box(&ask(edge)?);
                 nanoseconds = nanoseconds.min(start.elapsed().as_nanos() as f64);
             }
-            let verdict = match ask(edge)?.outcome {
-                PathOutcome::Free => Verdict::Free,
-                PathOutcome::Contact(_) => Verdict::Contact,
-                PathOutcome::Undecided(_) => Verdict::Undecided,
+            let verdict = match ask(edge)? {
+                path if path.is_free() => Verdict::Free,
+                path if path.contact().is_some() => Verdict::Contact,
+                _ => Verdict::Undecided,
             };
             let length = edge[0].iter().zip(&edge[1]).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
             let mut sampled_free = [true; 2];

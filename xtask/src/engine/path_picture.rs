@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use convex_support::SupportMap;
 use convex_support::glam::{DMat3, DVec2, DVec3};
-use gjk_raycast::{Body, Linkage, PathContact, Scene};
+use gjk_raycast::{Body, Impact, Linkage, PathContact, Scene};
 
 use crate::wire::shape::Solid;
 
@@ -30,7 +30,7 @@ pub(super) fn svg(
     robot: &Linkage<Solid<DVec3>>,
     scene: &Scene<Solid<DVec3>>,
     waypoints: &[Vec<f64>],
-    contact: Option<&PathContact<DVec3>>,
+    contact: Option<(PathContact<DVec3>, Impact<DVec3>)>,
 ) -> Option<String> {
     let view = view();
     let outline = |body: &dyn SupportMap<Vector = DVec3>| -> Vec<DVec2> {
@@ -46,7 +46,7 @@ pub(super) fn svg(
     let at = |edge: usize, time: f64| -> Vec<f64> {
         waypoints[edge].iter().zip(&waypoints[edge + 1]).map(|(a, b)| a + time * (b - a)).collect()
     };
-    let end = contact.map_or(f64::INFINITY, |contact| contact.edge as f64 + contact.time);
+    let end = contact.map_or(f64::INFINITY, |(contact, hit)| contact.edge as f64 + hit.time);
     let (mut before, mut after) = (Vec::new(), Vec::new());
     for (edge, k) in (0..waypoints.len() - 1).flat_map(|edge| (0..=POSES).map(move |k| (edge, k))) {
         let time = k as f64 / POSES as f64;
@@ -66,14 +66,14 @@ pub(super) fn svg(
         Layer { style: swept(COLOURS[0], 0.04, 0.25), outlines: before },
         Layer { style: swept(COLOURS[0], 0.1, 0.9), outlines: posed(&waypoints[0])? },
     ];
-    if let Some(contact) = contact {
-        layers.push(Layer { style: swept(COLOURS[3], 0.12, 0.9), outlines: posed(&at(contact.edge, contact.time))? });
+    if let Some((contact, hit)) = contact {
+        layers.push(Layer { style: swept(COLOURS[3], 0.12, 0.9), outlines: posed(&at(contact.edge, hit.time))? });
     }
-    let point = contact.map(|contact| (view * contact.point).truncate());
+    let point = contact.map(|(_, hit)| (view * hit.point).truncate());
     Some(draw(&layers, point, contact))
 }
 
-fn draw(layers: &[Layer], point: Option<DVec2>, contact: Option<&PathContact<DVec3>>) -> String {
+fn draw(layers: &[Layer], point: Option<DVec2>, contact: Option<(PathContact<DVec3>, Impact<DVec3>)>) -> String {
     let points = || layers.iter().flat_map(|layer| layer.outlines.iter().flatten().copied());
     let low = points().fold(DVec2::INFINITY, DVec2::min);
     let high = points().fold(DVec2::NEG_INFINITY, DVec2::max);
@@ -99,8 +99,8 @@ fn draw(layers: &[Layer], point: Option<DVec2>, contact: Option<&PathContact<DVe
         }
         svg.push_str("\"/>\n");
     }
-    let first = contact.map_or_else(String::new, |contact| {
-        format!("first contact: link {}, at {:.4} of the edge", contact.link, contact.time)
+    let first = contact.map_or_else(String::new, |(contact, hit)| {
+        format!("first contact: link {}, at {:.4} of the edge", contact.link, hit.time)
     });
     let entries = [(0, "links from the start on"), (1, "after the contact"), (2, "obstacles"), (3, first.as_str())];
     for (k, (colour, name)) in entries.into_iter().filter(|(k, _)| contact.is_some() || k % 2 == 0).enumerate() {

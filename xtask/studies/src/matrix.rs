@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
-use gjk_raycast::{JointBox, JointBoxOutcome, LinkageOptions};
+use gjk_raycast::{JointBox, JointBoxOutcome};
 use roxmltree::Document;
 
 use crate::scene::robot::{Jointed, Robot};
@@ -55,7 +55,6 @@ fn answer(choice: &Choice) -> Result<(), String> {
         Some(file) => pairs(file)?,
         None => every_pair(&robot),
     };
-    let options = LinkageOptions::new().with_max_boxes(choice.most);
     let mut output = io::stdout().lock();
     let mut kept = Vec::new();
     let mut counts = [0; 4];
@@ -64,8 +63,8 @@ fn answer(choice: &Choice) -> Result<(), String> {
         let place = |name: &String| robot.links.iter().position(|link| link == name);
         let (said, is_kept, column) = match [&links[0], &links[1]].map(place) {
             [Some(a), Some(b)] => {
-                let JointBox { outcome, boxes } =
-                    robot.linkage.joint_box([b, a], &robot.limits, options).map_err(|why| why.to_string())?;
+                let answer = robot.linkage.joint_box([b, a], &robot.limits, 0.0, choice.most);
+                let JointBox { outcome, boxes } = answer.map_err(|why| why.to_string())?;
                 match outcome {
                     JointBoxOutcome::Never => (format!("never, proved by {boxes} boxes"), true, 0),
                     // Neighbours mostly overlap at their joint by construction, and are not to be looked at.
@@ -163,8 +162,7 @@ mod tests {
             let apart = distance(&placed(a)?, &placed(b)?, DistanceOptions::new()).distance;
             assert!(apart > 0.01, "{} and {} are apart here", jointed.links[a], jointed.links[b]);
             let is_never = |target: f64| {
-                let options = LinkageOptions::new().with_target_distance(target);
-                let outcome = jointed.linkage.joint_box([a, b], &values.map(|value| [value; 2]), options);
+                let outcome = jointed.linkage.joint_box([a, b], &values.map(|value| [value; 2]), target, 100_000);
                 outcome.map(|found| found.outcome == JointBoxOutcome::Never).map_err(|why| why.to_string())
             };
             assert!(is_never(apart * 0.999_999)? && !is_never(apart * 1.000_001)?, "{a} and {b}: {apart}");

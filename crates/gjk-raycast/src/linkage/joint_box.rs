@@ -30,9 +30,9 @@ use super::frame::epsilons;
 use super::joint::{JointStage, Moving, Value};
 use super::link_motion::Route;
 use super::linkage::Linkage;
-use super::path::LinkageOptions;
 use super::result::FreeBox;
 use crate::axial;
+use crate::ray::check_limits;
 use crate::{SignedDistanceOptions, signed_distance};
 
 /// Of more joints than this, the signs of each are chosen alone.
@@ -72,13 +72,12 @@ pub enum JointBoxOutcome<S> {
 
 impl<S: SupportMap> Linkage<S> {
     /// Whether two links are ever as near one another as the target distance, where each joint value may be anywhere in
-    /// an interval: the joint limits, for a robot's whole life.
+    /// an interval: the joint limits, for a robot's whole life. It gives up after so many looks at parts of the box, of
+    /// which a pair of links of a robot arm takes up to ten thousand.
     ///
     /// ```
     /// use convex_support::{Rounded, Segment, glam::DVec2};
-    /// use gjk_raycast::{
-    ///     Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageOptions, Pose,
-    /// };
+    /// use gjk_raycast::{Joint, JointBoxOutcome, JointKind, Link, Linkage, Pose};
     ///
     /// // Three bars of length 1 in a row. The last may meet the first, if both joints turn far enough.
     /// let bar = Rounded::new(Segment::new([DVec2::ZERO, DVec2::X])?, 0.05)?;
@@ -91,7 +90,7 @@ impl<S: SupportMap> Linkage<S> {
     ///     ],
     ///     [link(None), link(Some(0)), link(Some(1))],
     /// )?;
-    /// let ask = |angle: f64| chain.joint_box([2, 0], &[[-angle, angle]; 2], LinkageOptions::new());
+    /// let ask = |angle: f64| chain.joint_box([2, 0], &[[-angle, angle]; 2], 0.0, 1000);
     ///
     /// // Up to 90° at both joints they do not.
     /// assert_eq!(ask(90f64.to_radians())?.outcome, JointBoxOutcome::Never);
@@ -107,9 +106,10 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         pair: [usize; 2],
         joint_box: &[[ScalarOf<S>; 2]],
-        options: LinkageOptions<S::Vector>,
+        target_distance: ScalarOf<S>,
+        max_boxes: usize,
     ) -> Result<JointBox<ScalarOf<S>>, LinkageError> {
-        self.joint_box_with(pair, joint_box, options, |_| {})
+        self.joint_box_with(pair, joint_box, target_distance, max_boxes, |_| {})
     }
 
     /// [`joint_box`](Self::joint_box), showing an observer the parts of the box in which two bodies are proved to be
@@ -121,10 +121,12 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         pair: [usize; 2],
         joint_box: &[[ScalarOf<S>; 2]],
-        options: LinkageOptions<S::Vector>,
+        target_distance: ScalarOf<S>,
+        max_boxes: usize,
         mut observer: impl FnMut(FreeBox<'_, S::Vector>),
     ) -> Result<JointBox<ScalarOf<S>>, LinkageError> {
-        let target = options.checked()?.target_distance;
+        check_limits(Scalar::ZERO, target_distance)?;
+        let target = target_distance.max(Scalar::ZERO);
         let route = self.skeleton.between(pair).ok_or(LinkageError::Pair { pair: 0 })?;
         for end in [0, 1] {
             self.check(0, &joint_box.iter().map(|interval| interval[end]).collect::<Vec<_>>())?;
@@ -159,7 +161,7 @@ impl<S: SupportMap> Linkage<S> {
                     BoxState::Open { column: None, .. } => share += part.share,
                 }
             }
-            if boxes >= options.max_boxes {
+            if boxes >= max_boxes {
                 break;
             }
             let order = &mut orders[usize::from(turn % LARGEST_EVERY == 0)];

@@ -47,6 +47,11 @@ impl<V: Vector> Route<V> {
         bounds
     }
 
+    /// How far a point of the link is from the origin of its last joint.
+    pub(super) fn distance(&self, point: V) -> V::Scalar {
+        self.tail.of(point).norm()
+    }
+
     /// The route to a frame from another, each given by its way from the world: back along the one to where they part,
     /// and on along the other.
     ///
@@ -94,47 +99,46 @@ impl<S: Scalar> PathEdge<'_, S> {
         let rate = |column: usize| (self.to[column] - self.from[column]).abs();
         route.bounds(rate, |column| self.from[column].abs().max(self.to[column].abs()))
     }
+
+    /// How the frame of the last joint on a route moves at a time, and where that of the link is.
+    pub(super) fn place<V: Vector<Scalar = S>>(&self, route: &Route<V>, time: S) -> (Moving<V>, LinkFrame<V>) {
+        let stages = route.stages.iter();
+        let moving = stages.fold(Moving::WORLD, |moving, stage| moving.beyond(stage, self.at(stage.column, time)));
+        (moving, moving.frame.then(&route.tail))
+    }
 }
 
 /// The motion of a link from a time of an edge on: from where it is in its own frame to where its joints have it.
 pub(super) struct LinkMotion<'l, V: Vector> {
     route: &'l Route<V>,
-    edge: PathEdge<'l, V::Scalar>,
+    pub(super) edge: PathEdge<'l, V::Scalar>,
+    bounds: Bounds<V::Scalar>,
     start: V::Scalar,
-    pub(super) bounds: Bounds<V::Scalar>,
     /// What was last computed, which is mostly asked for several times.
     last: Cell<(V::Scalar, Moving<V>, LinkFrame<V>)>,
 }
 
 impl<'l, V: Vector> LinkMotion<'l, V> {
-    pub(super) fn new(route: &'l Route<V>, edge: PathEdge<'l, V::Scalar>, start: V::Scalar) -> Self {
+    /// The motion by a route from a time on, with the [bounds](PathEdge::bounds) for it.
+    pub(super) fn new(
+        route: &'l Route<V>,
+        edge: PathEdge<'l, V::Scalar>,
+        bounds: Bounds<V::Scalar>,
+        start: V::Scalar,
+    ) -> Self {
         let last = Cell::new((V::Scalar::nan(), Moving::WORLD, LinkFrame::WORLD));
-        Self { route, edge, start, bounds: edge.bounds(route), last }
+        Self { route, edge, bounds, start, last }
     }
 
-    /// With what is known already of how the last joint's frame moves as the motion begins.
-    pub(super) fn with_known(self, moving: Moving<V>) -> Self {
-        self.last.set((V::Scalar::ZERO, moving, moving.frame.then(&self.route.tail)));
-        self
-    }
-
-    /// How the last joint's frame moves at a time, and where that of the link is.
+    /// What is at a time, as of [`PathEdge::place`].
     pub(super) fn at(&self, time: V::Scalar) -> (Moving<V>, LinkFrame<V>) {
         let (known, moving, frame) = self.last.get();
         if known == time {
             return (moving, frame);
         }
-        let stages = self.route.stages.iter();
-        let moving = stages
-            .fold(Moving::WORLD, |moving, stage| moving.beyond(stage, self.edge.at(stage.column, self.start + time)));
-        let frame = moving.frame.then(&self.route.tail);
+        let (moving, frame) = self.edge.place(self.route, self.start + time);
         self.last.set((time, moving, frame));
         (moving, frame)
-    }
-
-    /// How far a point of the link is from the origin of its last joint.
-    pub(super) fn distance(&self, point: V) -> V::Scalar {
-        self.route.tail.of(point).norm()
     }
 }
 
@@ -170,7 +174,7 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
         plane @ TurningPlane { from, to }: TurningPlane<V>,
         interval @ [start, end]: [V::Scalar; 2],
     ) -> V::Scalar {
-        let (bounds, distance, duration) = (&self.bounds, self.distance(ball.center), end - start);
+        let (bounds, distance, duration) = (&self.bounds, self.route.distance(ball.center), end - start);
         let always = bounds.along(plane, interval, distance + ball.radius);
         // Not where it cannot be less, or the interval has no end.
         if !(bounds.spin * duration < V::Scalar::ONE) {
@@ -199,7 +203,7 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
         let duration = to - from;
         let (_, frame) = self.at(to);
         let [start, end] = [self.at(from).1, frame].map(|frame| frame.of(ball.center));
-        let sagitta = self.bounds.acceleration.of(self.distance(ball.center)) * duration * duration;
+        let sagitta = self.bounds.acceleration.of(self.route.distance(ball.center)) * duration * duration;
         let error = frame.error_of(ball.center.norm());
         let velocity = if duration > V::Scalar::ZERO { (end - start) / duration } else { V::ZERO };
         MovingBall { start, velocity, radius: ball.radius + sagitta * V::Scalar::from_f64(0.125) + error + error }

@@ -4,22 +4,23 @@ use alloc::vec::Vec;
 
 use convex_support::numerics::bound::raised;
 use convex_support::{
-    BoundingSphere, Core, Matrix as _, Posed, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere, support_value,
+    Aabb, BoundingSphere, Core, Matrix as _, Posed, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere,
+    support_value,
 };
 use num_traits::Float;
 
 use super::error::LinkageError;
 use super::frame::{LinkFrame, epsilons};
 use super::joint::{Joint, JointKind, JointStage, Link, Moving};
-use super::link_motion::{LinkMotion, PathEdge, Route};
+use super::link_motion::{PathEdge, Route};
 use super::result::{Met, PathContact};
-use crate::axial;
+use crate::{Impact, axial};
 
 /// A robot: links, each of some bodies, that joints carry, in a tree.
 ///
 /// ```
 /// use convex_support::{Ball, Posed, Rounded, Segment, glam::DVec3};
-/// use gjk_raycast::{Joint, JointKind, Link, Linkage, LinkageOptions, PathWorkspace, Pose, Scene};
+/// use gjk_raycast::{Joint, JointKind, Link, Linkage, MotionCastOptions, PathWorkspace, Pose, Scene};
 ///
 /// // An arm of two links of length 1, whose shoulder and elbow turn about z.
 /// let bar = Rounded::new(Segment::new([DVec3::ZERO, DVec3::X])?, 0.05)?;
@@ -34,14 +35,15 @@ use crate::axial;
 ///
 /// // It reaches along x, and is to reach along y. A ball is in the way of the forearm.
 /// let scene = Scene::new([Posed::translated(Ball::new(0.1)?, DVec3::new(1.25, 1.25, 0.0))?])?;
-/// let (mut workspace, options) = (PathWorkspace::new(), LinkageOptions::new());
+/// let (mut workspace, options) = (PathWorkspace::new(), MotionCastOptions::new());
 /// let straight = [[0.0, 0.0], [90f64.to_radians(), 0.0]];
 /// let path = arm.path(&straight, &scene, options, &mut workspace)?;
-/// let contact = path.contact().ok_or("the forearm sweeps over the ball")?;
+/// let (contact, hit) = path.contact().ok_or("the forearm sweeps over the ball")?;
 /// assert_eq!((contact.edge, contact.link), (0, 1));
 /// // The ball is at 45°; the bar touches it where it is 0.15 from its middle.
 /// let truth = (45.0 - (0.15 / (1.25 * 2f64.sqrt())).asin().to_degrees()) / 90.0;
-/// assert!(contact.lower <= truth && truth <= contact.upper && (contact.time - truth).abs() < 1e-12);
+/// let cast = contact.cast;
+/// assert!(cast.lower <= truth && truth <= cast.upper && (hit.time - truth).abs() < 1e-12);
 ///
 /// // With the elbow bent by 150° on the way it is free: at every time, which is proved.
 /// let fold = 150f64.to_radians();
@@ -129,7 +131,7 @@ impl<S: SupportMap> Linkage<S> {
                 return Err(LinkageError::BodyNotFinite { link, body });
             }
             views.push(LinkView { link, base: None, route: Route::new(way, tail) });
-            balls.push(LinkBalls { stage, all: ball_around(each.iter().copied()), each });
+            balls.push(LinkBalls { stage, all: ball_around(&each), each });
             all.push(bodies);
         }
         Ok(Self { skeleton: Skeleton { stages, links: balls, views }, bodies: all })
@@ -182,7 +184,7 @@ impl<S: SupportMap> Linkage<S> {
         self.check(0, values)?;
         let shape = self.bodies(link).get(body).ok_or(LinkageError::NoSuchBody { link, body })?;
         let (route, edge) = (&self.skeleton.views[link].route, PathEdge { from: values, to: values });
-        let (_, frame) = LinkMotion::new(route, edge, Scalar::ZERO).at(Scalar::ZERO);
+        let (_, frame) = edge.place(route, Scalar::ZERO);
         let placed = Posed::from_matrix(shape, frame.rotation, frame.translation);
         placed.map_err(|_| LinkageError::BodyNotFinite { link, body })
     }
@@ -210,8 +212,8 @@ impl<S: SupportMap> Linkage<S> {
         self.check(1, to)?;
         let ball = self.skeleton.links.get(link).ok_or(LinkageError::NoSuchBody { link, body: 0 })?.all;
         let (route, edge) = (&self.skeleton.views[link].route, PathEdge { from, to });
-        let motion = LinkMotion::new(route, edge, Scalar::ZERO);
-        let ((moving, frame), reach) = (motion.at(Scalar::ZERO), motion.distance(ball.center) + ball.radius);
+        let ((moving, frame), bounds) = (edge.place(route, Scalar::ZERO), edge.bounds(route));
+        let reach = route.distance(ball.center) + ball.radius;
         let at_first = if let Some(n) = along {
             let turned = frame.rotation.transpose_mul(axial::turning(moving.spin, -n));
             let farthest = self.bodies(link).iter().map(|body| support_value(body, turned));
@@ -219,8 +221,8 @@ impl<S: SupportMap> Linkage<S> {
         } else {
             moving.velocity_at(frame.of(ball.center)).norm() + moving.spin.norm() * ball.radius
         };
-        let near = at_first + motion.bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
-        let always = motion.bounds.speed.of(reach);
+        let near = at_first + bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
+        let always = bounds.speed.of(reach);
         // What the frame and the derivatives lose is a small part of what always holds.
         Ok(near.min(always) + always * (moving.frame.turn_error + epsilons(64.0)))
     }
@@ -236,7 +238,7 @@ impl<S: SupportMap> Linkage<S> {
     ///
     /// ```
     /// use convex_support::{Ball, glam::DVec2};
-    /// use gjk_raycast::{HalfSpace, Joint, Link, Linkage, LinkageOptions, PathWorkspace, Pose, Scene};
+    /// use gjk_raycast::{HalfSpace, Joint, Link, Linkage, MotionCastOptions, PathWorkspace, Pose, Scene};
     ///
     /// // A ball of radius 1 slides from x = 0 to 4, and meets a wall at x = 3 when half of that is done.
     /// let slide = Joint::prismatic(None, Pose::default(), DVec2::X);
@@ -244,8 +246,8 @@ impl<S: SupportMap> Linkage<S> {
     /// let mut scene = Scene::<Ball<DVec2>>::default();
     /// scene.insert_half_space(HalfSpace::new(DVec2::NEG_X, -3.0)?);
     /// let ways = [[0.0], [4.0]];
-    /// let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
-    /// let contact = path.contact().ok_or("it meets the wall")?;
+    /// let path = robot.path(&ways, &scene, MotionCastOptions::new(), &mut PathWorkspace::new())?;
+    /// let (contact, _) = path.contact().ok_or("it meets the wall")?;
     ///
     /// // t = (2 − from)/(to − from)
     /// let [[by_from, by_to]] = robot.time_gradient(&ways, &contact).ok_or("it comes nearer")?[..] else {
@@ -259,7 +261,8 @@ impl<S: SupportMap> Linkage<S> {
         waypoints: &[W],
         contact: &PathContact<S::Vector>,
     ) -> Option<Vec<[ScalarOf<S>; 2]>> {
-        let &PathContact { edge, time, link, met, point, normal, .. } = contact;
+        let &PathContact { edge, link, met, cast, .. } = contact;
+        let Impact { time, point, normal } = cast.outcome.hit()?;
         let ends = [edge, edge + 1].map(|i| waypoints.get(i).map(AsRef::as_ref));
         let edge = PathEdge { from: ends[0]?, to: ends[1]? };
         self.check(0, edge.from).and(self.check(1, edge.to)).ok()?;
@@ -308,11 +311,12 @@ fn ball_of<S: SupportMap>(body: &S) -> BoundingSphere<S::Vector> {
 }
 
 /// A ball around balls.
-fn ball_around<V: Vector>(balls: impl Iterator<Item = BoundingSphere<V>> + Clone) -> BoundingSphere<V> {
-    let corners = |sign: V::Scalar| balls.clone().map(move |ball| ball.center + V::splat(ball.radius * sign));
-    let least = corners(-V::Scalar::ONE).reduce(V::min).unwrap_or(V::ZERO);
-    let most = corners(V::Scalar::ONE).reduce(V::max).unwrap_or(V::ZERO);
-    let center = (least + most) * V::Scalar::from_f64(0.5);
-    let reach = |ball: BoundingSphere<V>| (ball.center - center).norm() + ball.radius;
-    BoundingSphere { center, radius: raised(balls.map(reach).fold(V::Scalar::ZERO, Float::max)) }
+fn ball_around<V: Vector>(balls: &[BoundingSphere<V>]) -> BoundingSphere<V> {
+    let boxes = balls.iter().map(|&BoundingSphere { center, radius }| {
+        let (min, max) = (center - V::splat(radius), center + V::splat(radius));
+        Aabb { min, max }
+    });
+    let center = boxes.reduce(|a, b| a.union(&b)).map_or(V::ZERO, |around| around.center());
+    let reach = |ball: &BoundingSphere<V>| (ball.center - center).norm() + ball.radius;
+    BoundingSphere { center, radius: raised(balls.iter().map(reach).fold(V::Scalar::ZERO, Float::max)) }
 }

@@ -15,6 +15,5 @@ pub use error::LinkageError;
 pub use joint::{Joint, JointKind, Link};
 pub use joint_box::{JointBox, JointBoxOutcome};
 pub use linkage::Linkage;
-pub use path::LinkageOptions;
-pub use result::{FreeBox, FreeInterval, Met, Path, PathContact, PathOutcome, PathStop, PathWork};
+pub use result::{FreeBox, FreeInterval, Met, Path, PathContact, PathWork};
 pub use sweep::PathWorkspace;

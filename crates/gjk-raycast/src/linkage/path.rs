@@ -6,63 +6,10 @@ use num_traits::Float;
 use super::error::LinkageError;
 use super::link_motion::{LinkMotion, PathEdge};
 use super::linkage::{LinkView, Linkage};
-use super::result::{FreeInterval, Met, Path, PathContact, PathOutcome, PathStop, PathWork, ProvedSteps};
+use super::result::{FreeInterval, Met, Path, PathContact, PathWork, ProvedSteps};
 use super::sweep::{Near, PathWorkspace, Sweep};
 use crate::motion::checked;
-use crate::options::setters;
-use crate::{Body, Impact, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene};
-
-/// Parts of a box of joint values to look at: a pair of links of a robot arm takes up to ten thousand.
-const MAX_BOXES: usize = 100_000;
-
-/// Options of [`Linkage::path`] and [`Linkage::joint_box`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct LinkageOptions<V: Vector> {
-    /// How near is too near: bodies count as touching at this distance. A negative value is taken for zero. Default: 0.
-    pub target_distance: V::Scalar,
-    /// As of [`MotionCastOptions::tolerance`]. Default: 0.
-    pub tolerance: V::Scalar,
-    /// As of [`MotionCastOptions::max_iterations`], for each body of a link and each that is near it. Default: that of
-    /// a motion cast.
-    pub max_iterations: usize,
-    /// The end of what is asked of a path: a time, of which each edge takes 1. A negative value is taken for zero.
-    /// Default: infinity.
-    pub max_time: V::Scalar,
-    /// The parts of a box of joint values to look at, after which to give up. Default: 100 000.
-    pub max_boxes: usize,
-}
-
-impl<V: Vector> LinkageOptions<V> {
-    /// The default options.
-    #[must_use]
-    pub fn new() -> Self {
-        let MotionCastOptions { target_distance, tolerance, max_iterations, max_time, .. } =
-            MotionCastOptions::<V>::new();
-        Self { target_distance, tolerance, max_iterations, max_time, max_boxes: MAX_BOXES }
-    }
-
-    setters!(target_distance, tolerance, max_iterations, max_time);
-
-    /// With another number of [parts](Self::max_boxes).
-    #[must_use]
-    pub const fn with_max_boxes(mut self, max_boxes: usize) -> Self {
-        self.max_boxes = max_boxes;
-        self
-    }
-
-    /// Those of casts.
-    pub(super) fn checked(&self) -> Result<MotionCastOptions<V>, RayCastError> {
-        let &Self { target_distance, tolerance, max_iterations, max_time, .. } = self;
-        checked(MotionCastOptions { target_distance, tolerance, max_iterations, max_time, ..MotionCastOptions::new() })
-    }
-}
-
-impl<V: Vector> Default for LinkageOptions<V> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+use crate::{Body, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene, StartInContact};
 
 impl<S: SupportMap> Linkage<S> {
     /// Whether the way along waypoints is free, among the bodies of a scene at rest, and of the
@@ -73,8 +20,12 @@ impl<S: SupportMap> Linkage<S> {
     ///
     /// Along each edge, what comes near is found first. What is near is cast, earliest first, and only until the first
     /// contact so far: [`motion_cast`](crate::motion_cast()) proves it free at all times, or brackets its first
-    /// contact. Bounds account for the rounding of the joints' poses too, so that [`PathOutcome::Free`] is a proof
+    /// contact. Bounds account for the rounding of the joints' poses too, so that a free path is a proof
     /// about the linkage as it is given by its numbers.
+    ///
+    /// The options are those of the casts, but that `max_time` is a time of the path, each edge of which takes 1, and
+    /// `max_iterations` counts for each body of a link and each that is near it. A start in contact is a contact,
+    /// whatever they say of it, and their axis is not looked at.
     ///
     /// # Errors
     /// [`LinkageError`] if the path is empty, a waypoint has another number of values than [`values`](Self::values), a
@@ -83,7 +34,7 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         waypoints: &[W],
         scene: &Scene<O>,
-        options: LinkageOptions<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
         workspace: &mut PathWorkspace<S::Vector>,
     ) -> Result<Path<S::Vector>, LinkageError> {
         self.watched_path(waypoints, scene, options, workspace, None)
@@ -100,7 +51,7 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         waypoints: &[W],
         scene: &Scene<O>,
-        options: LinkageOptions<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
         workspace: &mut PathWorkspace<S::Vector>,
         mut observer: impl FnMut(FreeInterval<S::Vector>),
     ) -> Result<Path<S::Vector>, LinkageError> {
@@ -113,7 +64,7 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         paths: &[P],
         scene: &Scene<O>,
-        options: LinkageOptions<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
     ) -> alloc::vec::Vec<Result<Path<S::Vector>, LinkageError>>
     where
         S: Sync,
@@ -127,11 +78,12 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         waypoints: &[W],
         scene: &Scene<O>,
-        options: LinkageOptions<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
         workspace: &mut PathWorkspace<S::Vector>,
         mut observer: Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<Path<S::Vector>, LinkageError> {
-        let options = options.checked()?;
+        // What is in contact as a part of an edge begins is so, whatever was before.
+        let options = MotionCastOptions { start_in_contact: StartInContact::Report, ..checked(options)? };
         for (index, waypoint) in waypoints.iter().enumerate() {
             self.check(index, waypoint.as_ref())?;
         }
@@ -152,47 +104,44 @@ impl<S: SupportMap> Linkage<S> {
             let mut first = First::<S::Vector> { edge: index, contact: None, stop: None };
             let (skeleton, tree, space) = (&self.skeleton, scene.tree(), &mut *workspace);
             let mut sweep = Sweep { skeleton, tree, edge, target, space, end: duration, parts: 0 };
-            sweep.run(&mut |near| {
+            sweep.run(&mut |near, motion| {
                 work.casts += 1;
                 let options = options.with_max_time(duration);
                 if let Some(base) = self.skeleton.views[near.view].base {
                     let base = Body::Convex(&self.bodies[base][near.other]);
-                    self.cast(near, (&base, None), edge, options, &mut first, &mut observer)?;
+                    self.cast(near, motion, (&base, None), options, &mut first, &mut observer)?;
                 } else if let Some(obstacle) = scene.get(near.other) {
                     let at = scene.tree().get(near.other).map(|around| around.center());
-                    self.cast(near, (obstacle, at), edge, options, &mut first, &mut observer)?;
+                    self.cast(near, motion, (obstacle, at), options, &mut first, &mut observer)?;
                 }
                 Ok(first.end(duration))
             })?;
             work.parts += sweep.parts;
-            let outcome = open.map_or(first.outcome(), |open| Some(first.goes_on(open)));
+            let found = open.map_or(first.of_both(), |open| Some(first.goes_on(open)));
             // What rounding leaves open at a waypoint, the next edge may decide.
-            if open.is_none()
-                && index + 1 < last
-                && rest > Scalar::ONE
-                && outcome.is_some_and(|outcome| is_open_at_end(&outcome))
-            {
-                open = outcome;
-            } else if let Some(outcome) = outcome {
-                return Ok(Path { outcome, work });
+            let may_go_on = open.is_none() && index + 1 < last && rest > Scalar::ONE;
+            if may_go_on && found.is_some_and(|found| is_open_at_end(&found)) {
+                open = found;
+            } else if found.is_some() {
+                return Ok(Path { first: found, work });
             }
         }
-        Ok(Path { outcome: PathOutcome::Free, work })
+        Ok(Path { first: None, work })
     }
 
     /// Casts a body at what may come near it.
     fn cast<O: SupportMap<Vector = S::Vector>>(
         &self,
         near: &Near<ScalarOf<S>>,
+        motion: LinkMotion<'_, S::Vector>,
         (against, at): (&Body<O>, Option<S::Vector>),
-        edge: PathEdge<'_, ScalarOf<S>>,
         options: MotionCastOptions<S::Vector>,
         first: &mut First<S::Vector>,
         observer: &mut Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<(), RayCastError> {
         let &Near { from, to, view, body, other } = near;
-        let LinkView { link, base, ref route } = self.skeleton.views[view];
-        let (motion, shape) = (LinkMotion::new(route, edge, from), &self.bodies[link][body]);
+        let LinkView { link, base, .. } = self.skeleton.views[view];
+        let shape = &self.bodies[link][body];
         let met = base.map_or(Met::Obstacle(other), |link| Met::Link { link, body: other });
         // A first guess of the normal.
         let center = motion.at(Scalar::ZERO).1.of(self.skeleton.links[link].each[body].center);
@@ -219,11 +168,10 @@ impl<S: SupportMap> Linkage<S> {
         }
         if let (Outcome::Hit(hit), Some(base)) = (&mut cast.outcome, base) {
             // It was seen from the second link.
-            let route = &self.skeleton.views[base].route;
-            let frame = LinkMotion::new(route, edge, from).at(hit.time).1;
+            let (_, frame) = motion.edge.place(&self.skeleton.views[base].route, from + hit.time);
             (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
         }
-        first.take(cast, near, link, met);
+        first.take(PathContact { edge: first.edge, link, body, met, cast }, from);
         Ok(())
     }
 }
@@ -233,62 +181,62 @@ struct First<V: Vector> {
     edge: usize,
     contact: Option<PathContact<V>>,
     /// Where an undecided cast may be one.
-    stop: Option<PathStop<V::Scalar>>,
+    stop: Option<PathContact<V>>,
 }
 
 impl<V: Vector> First<V> {
-    /// Takes the cast of a body. The first contact of all is bracketed by the least bounds of each, and named is the
-    /// one that is certain first, which is the one that is met at the upper bound.
-    fn take(&mut self, cast: MotionCast<V>, &Near { from, body, .. }: &Near<V::Scalar>, link: usize, met: Met) {
+    /// Takes the cast of a body from a time on. The first contact of all is bracketed by the least bounds of each, and
+    /// named is the one that is certain first, which is the one that is met at the upper bound.
+    fn take(&mut self, mut next: PathContact<V>, from: V::Scalar) {
         // The sum with a start is rounded.
         let room = if from == V::Scalar::ZERO { from } else { V::Scalar::EPSILON };
-        let [lower, upper] = [(from + cast.lower - room).max(from), from + cast.upper + room];
-        match cast.outcome {
+        let cast = &mut next.cast;
+        (cast.lower, cast.upper) = ((from + cast.lower - room).max(from), from + cast.upper + room);
+        match &mut cast.outcome {
             Outcome::Miss(_) => {}
             Outcome::Undecided => {
-                if self.stop.is_none_or(|stop| lower < stop.lower) {
-                    self.stop = Some(PathStop { edge: self.edge, lower, link, body, met });
+                if self.stop.is_none_or(|stop| next.cast.lower < stop.cast.lower) {
+                    self.stop = Some(next);
                 }
             }
-            Outcome::Hit(Impact { time, point, normal }) => {
-                let (edge, time, status) = (self.edge, (from + time).min(upper).max(lower), cast.status);
-                let next = PathContact { edge, time, lower, upper, link, body, met, point, normal, status };
+            Outcome::Hit(hit) => {
+                hit.time = (from + hit.time).min(cast.upper).max(cast.lower);
+                let when = |PathContact { cast, .. }: &PathContact<V>| match cast.outcome {
+                    Outcome::Hit(hit) if !cast.is_certain() => hit.time,
+                    _ => cast.upper,
+                };
                 let known = self.contact.unwrap_or(next);
-                let when = |contact: &PathContact<V>| if contact.is_certain() { contact.upper } else { contact.time };
-                let earlier = if when(&next) < when(&known) { next } else { known };
-                let (lower, upper) = (lower.min(known.lower), upper.min(known.upper));
-                self.contact = Some(PathContact { lower, upper, ..earlier });
+                let mut earlier = if when(&next) < when(&known) { next } else { known };
+                earlier.cast.lower = next.cast.lower.min(known.cast.lower);
+                earlier.cast.upper = next.cast.upper.min(known.cast.upper);
+                self.contact = Some(earlier);
             }
         }
     }
 
     /// The time from which on nothing matters.
     fn end(&self, duration: V::Scalar) -> V::Scalar {
-        let [contact, stop] = [self.contact.map(|contact| contact.upper), self.stop.map(|stop| stop.lower)];
+        let [contact, stop] = [self.contact.map(|it| it.cast.upper), self.stop.map(|it| it.cast.lower)];
         contact.into_iter().chain(stop).fold(duration, Float::min)
     }
 
     /// What is known at the end of the edge before, where that is [open](is_open_at_end) and this edge follows: where
     /// this one begins in contact, or comes to one at once, that is the contact, at the waypoint.
-    fn goes_on(&self, open: PathOutcome<V>) -> PathOutcome<V> {
-        let (PathOutcome::Contact(PathContact { edge, lower, .. })
-        | PathOutcome::Undecided(PathStop { edge, lower, .. })) = open
-        else {
-            return open;
-        };
-        match self.outcome() {
-            Some(PathOutcome::Contact(contact)) if contact.is_certain() && contact.upper < at_waypoint() => {
-                let (time, upper) = (V::Scalar::ONE, V::Scalar::ONE + contact.upper + V::Scalar::EPSILON);
-                PathOutcome::Contact(PathContact { edge, time, lower, upper, ..contact })
-            }
-            _ => open,
+    fn goes_on(&self, open: PathContact<V>) -> PathContact<V> {
+        let is_at_once = |cast: &MotionCast<V>| cast.is_certain() && cast.upper < at_waypoint();
+        let Some(mut next) = self.of_both().filter(|next| is_at_once(&next.cast)) else { return open };
+        if let Outcome::Hit(hit) = &mut next.cast.outcome {
+            hit.time = Scalar::ONE;
         }
+        (next.edge, next.cast.lower) = (open.edge, open.cast.lower);
+        next.cast.upper = V::Scalar::ONE + next.cast.upper + V::Scalar::EPSILON;
+        next
     }
 
-    /// What is known of the edge; `None` if it is free.
-    fn outcome(&self) -> Option<PathOutcome<V>> {
-        let stop = self.stop.filter(|stop| self.contact.is_none_or(|contact| stop.lower < contact.lower));
-        stop.map(PathOutcome::Undecided).or(self.contact.map(PathOutcome::Contact))
+    /// What comes first; `None` if the edge is free.
+    fn of_both(&self) -> Option<PathContact<V>> {
+        let is_first = |stop: &PathContact<V>| self.contact.is_none_or(|it| stop.cast.lower < it.cast.lower);
+        self.stop.filter(is_first).or(self.contact)
     }
 }
 
@@ -299,12 +247,6 @@ fn at_waypoint<S: Scalar>() -> S {
 }
 
 /// Whether something may be met at the end of an edge, and not before it.
-fn is_open_at_end<V: Vector>(outcome: &PathOutcome<V>) -> bool {
-    match outcome {
-        PathOutcome::Contact(contact) if contact.is_certain() => false,
-        PathOutcome::Contact(PathContact { lower, .. }) | PathOutcome::Undecided(PathStop { lower, .. }) => {
-            V::Scalar::ONE - *lower < at_waypoint()
-        }
-        PathOutcome::Free => false,
-    }
+fn is_open_at_end<V: Vector>(PathContact { cast, .. }: &PathContact<V>) -> bool {
+    !cast.is_certain() && V::Scalar::ONE - cast.lower < at_waypoint()
 }

@@ -12,12 +12,13 @@ use core::ops::{ControlFlow, Range};
 use convex_support::{Aabb, BoundingSphere, BoxDistance, Bvh, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::frame::epsilons;
+use super::frame::{LinkFrame, epsilons};
 use super::joint::Moving;
 use super::link_motion::{LinkMotion, PathEdge};
 use super::linkage::{LinkView, Skeleton};
 use crate::RayCastError;
 use crate::half_space::Plane;
+use crate::motion::Bounds;
 
 /// A ball that moves by more than this part of its radius is looked at in a shorter time.
 const COARSE: f64 = 0.5;
@@ -44,6 +45,8 @@ pub(super) struct Near<S> {
 #[derive(Clone, Debug, Default)]
 pub struct PathWorkspace<V: Vector> {
     pub(super) half_spaces: Vec<(usize, Plane<V>)>,
+    /// How fast and unevenly the link of each view may move along the edge.
+    bounds: Vec<Bounds<V::Scalar>>,
     /// How the joints move at the middle of a part, as the world sees it.
     moving: Vec<Moving<V>>,
     /// The views that are not known to be free in the parts that are being looked at.
@@ -87,17 +90,19 @@ struct SweptBall<V: Vector> {
     drift: V::Scalar,
 }
 
-impl<V: Vector> Sweep<'_, V> {
+impl<'s, V: Vector> Sweep<'s, V> {
     /// Shows what may come near until the end, in the order of time but for what is near for long. Who is shown it
     /// answers with a time from which on nothing matters.
     pub(super) fn run(
         &mut self,
-        show: &mut impl FnMut(&Near<V::Scalar>) -> Result<V::Scalar, RayCastError>,
+        show: &mut impl FnMut(&Near<V::Scalar>, LinkMotion<'s, V>) -> Result<V::Scalar, RayCastError>,
     ) -> Result<(), RayCastError> {
         let (space, views) = (&mut *self.space, self.skeleton.views.len());
         space.near.clear();
         space.views.clear();
         space.views.extend(0..views);
+        space.bounds.clear();
+        space.bounds.extend(self.skeleton.views.iter().map(|view| self.edge.bounds(&view.route)));
         self.visit([V::Scalar::ZERO, self.end], 0, 0..views, show)
     }
 
@@ -107,7 +112,7 @@ impl<V: Vector> Sweep<'_, V> {
         times @ [from, to]: [V::Scalar; 2],
         depth: u32,
         views: Range<usize>,
-        show: &mut impl FnMut(&Near<V::Scalar>) -> Result<V::Scalar, RayCastError>,
+        show: &mut impl FnMut(&Near<V::Scalar>, LinkMotion<'s, V>) -> Result<V::Scalar, RayCastError>,
     ) -> Result<(), RayCastError> {
         if from > self.end {
             return Ok(());
@@ -136,7 +141,8 @@ impl<V: Vector> Sweep<'_, V> {
                 // A contact found before bounds those after it.
                 if near.from <= self.end {
                     let cut = Near { to: near.to.min(self.end), ..near };
-                    self.end = self.end.min(show(&cut)?);
+                    let (route, bounds) = (&self.skeleton.views[near.view].route, self.space.bounds[near.view]);
+                    self.end = self.end.min(show(&cut, LinkMotion::new(route, self.edge, bounds, near.from))?);
                 }
             }
         }
@@ -157,15 +163,18 @@ impl<V: Vector> Sweep<'_, V> {
     fn is_coarse(&mut self, index: usize, [from, to]: [V::Scalar; 2], half: V::Scalar, is_last: bool) -> bool {
         let LinkView { link, base, ref route } = self.skeleton.views[index];
         let (link, base) = (&self.skeleton.links[link], base.map(|base| &self.skeleton.links[base]));
-        let motion = LinkMotion::new(route, self.edge, from + half);
-        let motion = match base {
-            Some(_) => motion,
-            None => motion.with_known(link.stage.map_or(Moving::WORLD, |stage| self.space.moving[stage])),
+        let placed = match base {
+            Some(_) => self.edge.place(route, from + half),
+            None => {
+                let moving = link.stage.map_or(Moving::WORLD, |stage| self.space.moving[stage]);
+                (moving, moving.frame.then(&route.tail))
+            }
         };
+        let swept = |ball| SweptBall::of(ball, route.distance(ball.center), &placed, &self.space.bounds[index], half);
         let is_near = |reach: &SweptBall<V>, &BoundingSphere { center, radius }: &BoundingSphere<V>| {
             reach.meets_box(&Aabb { min: center, max: center }, radius + self.target)
         };
-        let reach = SweptBall::of(&link.all, &motion, half);
+        let reach = swept(&link.all);
         let smaller = base.map_or(link.all.radius, |base| link.all.radius.min(base.all.radius));
         let is_coarse = !is_last && reach.drift > smaller * V::Scalar::from_f64(COARSE);
         let mut found = core::mem::take(&mut self.space.found);
@@ -182,7 +191,7 @@ impl<V: Vector> Sweep<'_, V> {
         }
         let is_coarse = is_coarse && !found.is_empty();
         for (body, ball) in link.each.iter().enumerate().filter(|_| !is_coarse && !found.is_empty()) {
-            let reach = SweptBall::of(ball, &motion, half);
+            let reach = swept(ball);
             let meets = |other: usize| match (base, self.tree.get(other)) {
                 (Some(base), _) => is_near(&reach, &base.each[other]),
                 (None, Some(around)) => reach.meets_box(&around, self.target),
@@ -199,11 +208,17 @@ impl<V: Vector> Sweep<'_, V> {
 }
 
 impl<V: Vector> SweptBall<V> {
-    /// Of a ball in the frame of a link, which is in the middle of the part as its motion begins.
-    fn of(ball: &BoundingSphere<V>, motion: &LinkMotion<'_, V>, half: V::Scalar) -> Self {
+    /// Of a ball in the frame of a link, whose centre is at a distance from the origin of the last joint, and which is
+    /// so placed in the middle of the part.
+    fn of(
+        ball: &BoundingSphere<V>,
+        distance: V::Scalar,
+        (moving, frame): &(Moving<V>, LinkFrame<V>),
+        bounds: &Bounds<V::Scalar>,
+        half: V::Scalar,
+    ) -> Self {
         let (number, squared) = (V::Scalar::from_f64, half * half);
-        let ((moving, frame), bounds) = (motion.at(V::Scalar::ZERO), &motion.bounds);
-        let (center, distance) = (frame.of(ball.center), motion.distance(ball.center));
+        let center = frame.of(ball.center);
         let bent = bounds.jerk.of(distance) * half * squared * number(1.0 / 6.0);
         let always = bounds.speed.of(distance) * half;
         let (velocity, acceleration) = (moving.velocity_at(center), moving.acceleration_at(center));

@@ -12,8 +12,7 @@ use num_traits::Float as _;
 use super::free_interval::acceleration_if_free;
 use super::from_contact::{Base, Stage};
 use super::instant::{Approach, Instant, Limits, NEAR};
-use super::motion_cast::MotionCastOptions;
-use super::result::MotionIterate;
+use super::motion_cast::{MotionCastOptions, MotionIterate};
 use super::trajectory::TurningPlane;
 use crate::{Impact, Miss, MotionCast, Outcome, StartInContact, Status};
 
@@ -109,7 +108,7 @@ impl<'p, V: Vector> Search<'p, V> {
             bodies,
             options,
             observer,
-            base: Base::CONTACT,
+            base: Base::default(),
             acceleration: bodies.acceleration_along(plane, [zero, Scalar::ONE]),
             near,
             step: Scalar::ONE,

@@ -40,8 +40,8 @@ const DEEP: f64 = 4.0;
 /// How much of the way out of an overlap is asked for at once.
 const OUT: f64 = 0.9;
 
-/// From where distances are measured.
-#[derive(Clone, Copy)]
+/// From where distances are measured: from contact, by default.
+#[derive(Clone, Copy, Default)]
 pub(super) struct Base<S> {
     /// The signed distance that counts as contact, but for how the bodies' places are [rounded](Self::loose).
     pub(super) level: S,
@@ -60,9 +60,10 @@ pub(super) struct Base<S> {
 }
 
 /// What the bodies have done so far.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Default, PartialEq)]
 pub(super) enum Stage {
     /// They have been apart, or a contact counts whatever was before.
+    #[default]
     Apart,
     /// They have touched from the start on, to rounding.
     Touching,
@@ -75,21 +76,6 @@ pub(super) enum Stage {
 }
 
 impl<S: Scalar> Base<S> {
-    /// Where contact is what counts.
-    pub(super) const CONTACT: Self = {
-        let zero = S::ZERO;
-        Self {
-            level: zero,
-            stage: Stage::Apart,
-            start: zero,
-            highest: zero,
-            width: zero,
-            slack: zero,
-            since: zero,
-            tolerance: zero,
-        }
-    };
-
     /// How much lower the level is, in units of what the places of the bodies are rounded by at the time.
     pub(super) fn loose(&self) -> S {
         let is_exact = matches!(self.stage, Stage::Apart | Stage::Risen);
@@ -133,7 +119,7 @@ impl<V: Vector> Search<'_, V> {
         }
         let stage = if upper < slack * number(-DEEP) { Stage::Deep } else { Stage::Touching };
         let (width, tolerance) = (upper - gap, self.options.tolerance);
-        self.base = Base { start: distance, highest: upper, width, slack, tolerance, ..Base::CONTACT };
+        self.base = Base { start: distance, highest: upper, width, slack, tolerance, ..Base::default() };
         self.options.tolerance = V::Scalar::ZERO;
         self.raise(stage, gap - slack);
         match self.advance() {

@@ -13,12 +13,6 @@ const KINK: f64 = 0.1;
 /// Bodies that are apart, or overlap, by fewer errors than this are looked at closely.
 pub(super) const NEAR: f64 = 64.0;
 
-/// What points of both cores may be off a plane that they are said to be closest across, in errors.
-pub(super) const IN_PLANE: f64 = 4.0;
-
-/// The direction of closest points that are apart by this part of the size of both bodies is known to rounding.
-pub(super) const LONG: f64 = 1.0 / 16.0;
-
 /// What is known of the pair at one time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Instant<V: Vector> {

@@ -14,16 +14,14 @@ mod near_look;
 mod next_time;
 mod over_half_space;
 mod placed;
-mod result;
 mod rigid_motion;
 mod rough_look;
 mod trajectory;
 
 pub(crate) use chain_motion::Bounds;
 pub use chain_motion::ChainMotion;
-pub use motion_cast::{MotionCastOptions, motion_cast, motion_cast_with};
+pub use motion_cast::{MotionCastOptions, MotionIterate, motion_cast, motion_cast_with};
 pub(crate) use motion_cast::{check, checked};
 pub(crate) use placed::Moved;
-pub use result::MotionIterate;
 pub use rigid_motion::{Pose, RigidMotion};
 pub use trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};

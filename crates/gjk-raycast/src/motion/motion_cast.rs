@@ -7,7 +7,6 @@ use super::boxes::Block;
 use super::first_contact::{MotionEnd, Search};
 use super::instant::{Instant, Limits};
 use super::moving_pair::MovingPair;
-use super::result::MotionIterate;
 use super::rigid_motion::RigidMotion;
 use super::trajectory::Trajectory;
 use crate::body::{Both, CastBody, Shapes};
@@ -85,6 +84,23 @@ impl<V: Vector> MotionCastOptions<V> {
 }
 
 new_by_default!(MotionCastOptions);
+
+/// What an observer of a motion cast is shown of every time that is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionIterate<V: Vector> {
+    /// Counts from 0.
+    pub iteration: usize,
+    /// The time looked at.
+    pub time: V::Scalar,
+    /// By how much a plane certainly separates the bodies then; not positive where none is known.
+    pub gap: V::Scalar,
+    /// The unit normal of that plane, from `b` to `a`.
+    pub normal: V,
+    /// The bodies have no point in common up to this time.
+    pub lower: V::Scalar,
+    /// The bodies have a point in common at this time; infinite where none is known.
+    pub upper: V::Scalar,
+}
 
 /// When two moving bodies first touch, and where.
 ///

@@ -12,7 +12,7 @@
 use convex_support::{Scalar, SupportMap as _, Vector};
 use num_traits::Float;
 
-use super::instant::{IN_PLANE, Instant, LONG, Limits, NEAR};
+use super::instant::{Instant, Limits, NEAR};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::body::{Pair, PointPair, TracedSupport as _};
@@ -20,6 +20,12 @@ use crate::gjk::rounding;
 use crate::separation::{Cores, Uncertainty, across_corners, slack};
 use crate::simplex::{MAX_POINTS, project};
 use crate::unit::is_moderate;
+
+/// What points of both cores may be off a plane that they are said to be closest across, in errors.
+const IN_PLANE: f64 = 4.0;
+
+/// The direction of closest points that are apart by this part of the size of both bodies is known to rounding.
+const LONG: f64 = 1.0 / 16.0;
 
 /// Corners of both cores, each relative to its body's origin and turned back to time 0.
 #[derive(Clone, Copy)]

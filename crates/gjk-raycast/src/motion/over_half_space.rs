@@ -7,9 +7,8 @@ use num_traits::Float;
 
 use super::first_contact::Search;
 use super::instant::{Approach, Instant, Limits};
-use super::motion_cast::{MotionCastOptions, check, checked, linear_options, of_linear_cast};
+use super::motion_cast::{MotionCastOptions, MotionIterate, check, checked, linear_options, of_linear_cast};
 use super::moving_body::MovingBody;
-use super::result::MotionIterate;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::half_space::Plane;
 use crate::level::Level;
