@@ -61,13 +61,8 @@ pub(super) fn sqp<V: Vector>(
     }
     let start = bracket.low();
     let mut steps = Steps { gap: V::Scalar::infinity(), failures: 0, error_weight: V::Scalar::ONE };
-    let mut coarse = None;
     for _ in 0..MAX_STEPS {
-        let p = match frame.support_of(bracket, alpha.plane()) {
-            Ok(p) => p,
-            Err(_) if coarse.is_some() => break,
-            Err(stop) => return Err(stop),
-        };
+        let p = frame.support_of(bracket, alpha.plane())?;
         best.improve(bracket, frame, alpha, &p, Scalar::ZERO)?;
         let same = pieces.push(piece(bracket, frame, p, alpha), bracket.noise);
         steps.weigh_error(same);
@@ -79,17 +74,20 @@ pub(super) fn sqp<V: Vector>(
         } else if portal.high < start {
             break;
         }
-        match close(bracket, frame, &best, &pieces, &portal, start, &mut coarse) {
-            Err(Stop::InDoubt) => {}
-            found => return found,
+        // A segment first, since the weights in a flat triangle may be nothing but rounding.
+        let passed = pieces.passed(bracket.noise).filter(|below| below.high >= start);
+        for below in [passed, Some(OnLine::from(portal))].into_iter().flatten() {
+            if best.alpha.is_within(below.high - best.tau, bracket.tolerance()) {
+                match best.close_at(bracket, frame, &below) {
+                    Err(Stop::InDoubt) => {}
+                    found => return found,
+                }
+            }
         }
         let Some(to) = steps.next(bracket, &pieces, &portal, &best, alpha) else { break };
         alpha = to;
     }
-    match coarse {
-        Some(below) => best.close_at(bracket, frame, &below),
-        None => Err(Stop::InDoubt),
-    }
+    Err(Stop::InDoubt)
 }
 
 /// A point's piece at the plane it was found on. A point found on a plane along the ray counts for itself alone.
@@ -104,46 +102,6 @@ fn piece<V: Vector>(
         Some(alpha) => RayPiece { p, alpha, hessian: frame.hessian(bracket.body, frame.normal(alpha.plane())) },
         None => RayPiece { p, alpha, hessian: Symmetric::ZERO },
     }
-}
-
-/// Closes the bracket by pieces that the line passes or a portal that it runs through.
-///
-/// At a small slope, what closes the bracket to rounding of the planes is long along the ray, and there one more plane
-/// mostly shortens it by all of the rest: `λ` is where the last plane is crossed. Meanwhile `coarse` is what closes it.
-#[inline(always)]
-fn close<V: Vector>(
-    bracket: &mut Bracket<'_, V>,
-    frame: &RayFrame<V>,
-    best: &BestPlane<V>,
-    pieces: &RayPieces<V>,
-    portal: &Portal<V>,
-    start: V::Scalar,
-    coarse: &mut Option<OnLine<V>>,
-) -> Result<RayContact<V>, Stop<V>> {
-    let within = bracket.tolerance() * best.alpha.length();
-    let fine = (bracket.noise + bracket.noise).max(bracket.tolerance());
-    // A segment first, since the weights in a flat triangle may be nothing but rounding.
-    let passed = pieces.passed(bracket.noise).filter(|below| below.high >= start);
-    let enclosing = (portal.high - best.tau <= within).then(|| OnLine::from(*portal));
-    let mut wide = None;
-    for below in [&passed, &enclosing, &*coarse].into_iter().flatten() {
-        let gap = below.high - best.tau;
-        if !(gap <= within) {
-            continue;
-        }
-        if coarse.is_none() && gap > fine {
-            wide = wide.or(Some(*below));
-            continue;
-        }
-        match best.close_at(bracket, frame, below) {
-            Err(Stop::InDoubt) => {}
-            found => return found,
-        }
-    }
-    if coarse.is_none() {
-        *coarse = wide;
-    }
-    Err(Stop::InDoubt)
 }
 
 /// How well the steps go.
