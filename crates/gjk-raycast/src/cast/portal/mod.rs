@@ -42,25 +42,18 @@ pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayConta
     // far the next one is tilted.
     let told = bracket.options.warm_start.and_then(|warm| Some((warm.axis.unit()?, tilt(bracket, warm.error()))));
     let (first, tilt) = told.unwrap_or_else(|| (bracket.x(), Scalar::ONE));
-    let frame = RayFrame::new(bracket.line(), Scalar::ZERO);
-    let curved = frame.is_curved(bracket.body, first);
+    let core = RayFrame::new(bracket.line());
+    let curved = core.is_curved(bracket.body, first);
     if !curved && bracket.radius > Scalar::ZERO {
-        return rounded(bracket, &frame, first, tilt);
+        return rounded(bracket, &core, first, tilt);
     }
+    let frame = RayFrame { radius: bracket.radius, ..core };
     let mut seen = None;
-    let mut frame = if curved { RayFrame::new(bracket.line(), bracket.radius) } else { frame };
     if curved {
         match smooth(bracket, &frame, first, tilt < Scalar::ONE, &mut seen) {
             Err(Stop::InDoubt) => {}
             found => return found,
         }
     }
-    // A second time where the line was found to touch the body, and is moved inward.
-    for _ in 0..2 {
-        match triangle(bracket, &frame, first, seen.take(), tilt) {
-            Err(Stop::Touches(inward)) => frame = frame.moved(inward),
-            found => return found,
-        }
-    }
-    Err(Stop::InDoubt)
+    triangle(bracket, &frame, first, seen, tilt)
 }

@@ -159,7 +159,7 @@ fn enter_ellipsoid<V: Vector>(
     hessian: Symmetric<V::Scalar>,
 ) -> Result<Next<V>, Stop<V>> {
     let zero = V::Scalar::ZERO;
-    let foot = frame.split(frame.foot()).0;
+    let foot = frame.split(frame.line.foot).0;
     let point = ((p.u + foot.0, p.v + foot.1), -p.t);
     let (across, facing) = frame.split(n);
     let h = dot(across, point.0) + facing * point.1;

@@ -274,20 +274,22 @@ impl<V: Vector> Triangle<V> {
 /// zero: where two edges cross, the line runs through the parallelogram of their ends.
 fn mixed<V: Vector>(frame: &RayFrame<V>, p: &RayPoint<V>, q: &RayPoint<V>) -> Option<Triangle<V>> {
     let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-    if frame.radius() > zero {
+    if frame.radius > zero {
         return None;
     }
     let area = p.cross(q);
     let turn = one.copysign(area);
     [[p, q], [q, p]].into_iter().find_map(|[a, b]| {
-        let s = frame.seen(PointPair { a: a.witness.a, b: b.witness.b });
+        let witness = PointPair { a: a.witness.a, b: b.witness.b };
+        let point = witness.a - witness.b;
+        let s = frame.see(point, point, witness);
         let weights = [area.abs(), q.cross(&s) * turn, s.cross(p) * turn];
         (weights[1] > zero && weights[2] > zero).then_some(Triangle { corners: [s, *p, *q], weights, turn })
     })
 }
 
 /// The support point along a vector across the ray, if the plane there does not separate and the point is beyond the
-/// line. Where the line touches the body there, to rounding, it is to pass a little farther inside.
+/// line.
 #[cold]
 #[inline(never)]
 fn support_across<V: Vector>(
@@ -298,13 +300,6 @@ fn support_across<V: Vector>(
     let across = frame.vector(toward).unit().ok_or(Stop::InDoubt)?;
     let p: RayPoint<_> = frame.support(bracket, across)?;
     bracket.advance(across, p.point)?;
-    let beyond = (p.point - frame.foot()).dot(across) + frame.radius();
-    if beyond > Scalar::ZERO {
-        return Ok(p);
-    }
-    let inward = bracket.noise * V::Scalar::from_f64(0.5);
-    if bracket.radius == Scalar::ZERO && frame.foot() == bracket.line().foot && beyond > -inward {
-        return Err(Stop::Touches(-across * inward));
-    }
-    Err(Stop::InDoubt)
+    let beyond = (p.point - frame.line.foot).dot(across) + frame.radius;
+    if beyond > Scalar::ZERO { Ok(p) } else { Err(Stop::InDoubt) }
 }
