@@ -487,21 +487,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
         RayContact { mu: at, normal: self.normal, witness }
     }
 
-    /// The contact where the last plane is crossed, if the core has a `point` on the line, made of `witness`, that is
-    /// no farther behind the plane than rounding.
-    pub(super) fn close_at_point(&mut self, point: V, witness: PointPair<V>) -> Option<RayContact<V>> {
-        let line = self.ray.line;
-        let aside = line.across(point - line.foot).length();
-        let mu = point.dot(line.direction);
-        let slope = self.slope_or_one();
-        let near = aside <= self.noise * V::Scalar::from_f64(0.5);
-        if !(near && (mu - self.low()) * slope <= self.noise + self.noise) {
-            return None;
-        }
-        self.high = Bound { at: mu.max(self.low()), spread: self.spread_or_one(), more: Scalar::ZERO };
-        Some(RayContact { mu: self.low_or_at(mu), normal: self.normal, witness })
-    }
-
     /// How much later the upper bound may be. The surface may be met less steeply than the plane, by what noise leaves
     /// open.
     fn delay(&self) -> V::Scalar {

@@ -28,10 +28,6 @@ impl<V: Vector> Recent<V> {
         }
         self.0.push(point, along, witness);
     }
-
-    pub(super) fn simplex(&self) -> &Simplex<V> {
-        &self.0
-    }
 }
 
 /// Two support points are of one smooth piece if the curvature at one foretells this much of the other.
