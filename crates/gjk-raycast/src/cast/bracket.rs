@@ -79,7 +79,8 @@ pub(super) struct Bracket<'a, V: Vector> {
     /// The unit of length.
     pub(super) scale: V::Scalar,
     observer: Observer<'a, V>,
-    iterations: usize,
+    /// The number of support points taken.
+    pub(super) iterations: usize,
     /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative
     /// where the line misses it, and the half, which is then zero.
     chord: (V::Scalar, V::Scalar),
@@ -362,16 +363,11 @@ impl<'a, V: Vector> Bracket<'a, V> {
         if at_earliest > self.error { Err(Stop::Miss(n)) } else { Ok(None) }
     }
 
-    /// The contact where the last plane is crossed, if a point of the core, made of `witness`, is no farther than the
-    /// radius from the line at `high`, and that is no farther behind the plane than was asked for.
+    /// The contact where the last plane is crossed, if a point made of `witness`, about which a ball of the radius is
+    /// within the body, is no farther than that from the line at `high`, and that is no farther behind the plane than
+    /// was asked for.
     #[inline(always)]
-    pub(super) fn close(&mut self, point: V, witness: PointPair<V>, high: V::Scalar) -> Result<RayContact<V>, Stop<V>> {
-        self.close_in(self.radius, point, witness, high)
-    }
-
-    /// The same for a ball within the body, of any radius about the point.
-    #[inline(always)]
-    pub(super) fn close_in(
+    pub(super) fn close(
         &mut self,
         radius: V::Scalar,
         point: V,
@@ -530,11 +526,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
         };
         let other = other.filter(|m| (m.dot(line.direction) > zero) == (slope < zero));
         other.and_then(|m| (n * m.dot(line.direction).abs() + m * slope.abs()).unit()).unwrap_or(n)
-    }
-
-    /// The number of support points taken.
-    pub(super) fn iterations(&self) -> usize {
-        self.iterations
     }
 }
 

@@ -21,7 +21,7 @@ use convex_support::{Scalar, Vector};
 
 use super::bracket::Bracket;
 use super::line::Line;
-use crate::symmetric::{Across, axes_across, cross, dot};
+use crate::symmetric::{Across, axes_across, cross, dot, way};
 
 /// As many corners as a polygon has at most.
 const MAX_CORNERS: usize = 8;
@@ -73,7 +73,7 @@ impl<V: Vector> View<V> {
         if V::DIM == 2 {
             return if p.across.0 > q.across.0 { Polygon::in_plane([p, q]) } else { Polygon::in_plane([q, p]) };
         }
-        let turns_left = cross(p.edge_to(&q), p.edge_to(&s)) > Scalar::ZERO;
+        let turns_left = cross(way(p.across, q.across), way(p.across, s.across)) > Scalar::ZERO;
         let mut polygon = Polygon::new();
         for corner in if turns_left { [p, q, s] } else { [q, p, s] } {
             polygon.insert(polygon.len, corner);
@@ -124,12 +124,6 @@ struct ProjectedCorner<S> {
     along: S,
 }
 
-impl<S: Scalar> ProjectedCorner<S> {
-    fn edge_to(&self, to: &Self) -> Across<S> {
-        (to.across.0 - self.across.0, to.across.1 - self.across.1)
-    }
-}
-
 /// The side of a polygon from a corner to the next.
 #[derive(Clone, Copy, Default)]
 struct PolygonSide<S> {
@@ -144,7 +138,7 @@ struct PolygonSide<S> {
 
 impl<S: Scalar> PolygonSide<S> {
     fn new(corner: ProjectedCorner<S>, to: &ProjectedCorner<S>) -> Self {
-        let (du, dv) = corner.edge_to(to);
+        let (du, dv) = way(corner.across, to.across);
         let per_length = (du * du + dv * dv).sqrt().recip();
         Self {
             corner,

@@ -10,7 +10,7 @@ use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
 use crate::curvature::{between, is_stiff_across, share_of_second, swept, turned};
 use crate::simplex::{MAX_POINTS, Simplex};
-use crate::symmetric::{Across, Symmetric, axes_across, dot};
+use crate::symmetric::{Across, Symmetric, axes_across, dot, way};
 
 /// Points of the swept body, each with the unit vector along which it is the support point; the newest last.
 pub(super) struct Recent<V: Vector>(Simplex<V>);
@@ -21,12 +21,12 @@ impl<V: Vector> Recent<V> {
     }
 
     /// Adds one; another at the same point, or the oldest of three, makes place.
-    pub(super) fn push(&mut self, point: V, along: V, witness: PointPair<V>) {
+    pub(super) fn push(&mut self, point: V, along: V) {
         let known = self.0.points().iter().position(|&p| p == point);
         if let Some(out) = known.or((self.0.points().len() == 3).then_some(0)) {
             self.0.remove(out);
         }
-        self.0.push(point, along, witness);
+        self.0.push(point, along, PointPair::default());
     }
 }
 
@@ -68,7 +68,7 @@ pub(super) fn newton<V: Vector>(
         (None, alone) => alone?,
         (Some(_), _) if V::DIM == 2 => return None,
         (Some(second), _) => {
-            let e = first.edge_to(&second);
+            let e = way(first.p, second.p);
             let hessian = first.hessian.blend(second.hessian, share_of_second(first.p, e));
             if !is_stiff_across(hessian, e) {
                 return None;
@@ -96,12 +96,6 @@ struct PieceAlongRay<S> {
     is_vertex: bool,
     /// The point before it was turned.
     found: Across<S>,
-}
-
-impl<S: Scalar> PieceAlongRay<S> {
-    fn edge_to(&self, other: &Self) -> Across<S> {
-        (other.p.0 - self.p.0, other.p.1 - self.p.1)
-    }
 }
 
 /// The piece to go between, if there is one, and the change to the normal that suits the first alone, if one does.
@@ -153,9 +147,9 @@ impl<V: Vector> SeenAlongRay<'_, '_, V> {
         let mut best = if alone.is_some() { noise } else { -V::Scalar::infinity() };
         for &(point, along) in others {
             let other = self.piece(point, along, n);
-            let e = first.edge_to(&other);
+            let e = way(p, other.p);
             // Points no farther apart than rounding are one.
-            let apart = (other.found.0 - p.0, other.found.1 - p.1);
+            let apart = way(p, other.found);
             let foretold = V::Scalar::from_f64(SAME_PIECE * SAME_PIECE) * dot(apart, apart);
             if dot(e, e) <= foretold.max(noise * noise) {
                 continue;

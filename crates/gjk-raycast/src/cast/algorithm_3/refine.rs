@@ -47,7 +47,7 @@ pub(super) fn refine<V: Vector>(
             return Ok(contact);
         }
         steps.judge(bracket.gap_to_hull(slope), turned.is_some(), bracket.noise);
-        recent.push(point + n * bracket.radius, n, witness);
+        recent.push(point + n * bracket.radius, n);
         if simplex.points().contains(&point) {
             if turned.is_some() {
                 continue;

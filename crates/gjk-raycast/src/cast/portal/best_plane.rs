@@ -5,7 +5,7 @@ use convex_support::{Scalar, Vector};
 use super::pieces::{MAX_PIECES, QuadraticModel, RayPiece};
 use super::ray_frame::Alpha;
 use crate::curvature::{between, is_stiff_across, share_of_second};
-use crate::symmetric::{Across, cross, dot};
+use crate::symmetric::{Across, cross, dot, way};
 
 /// Where the least of the models is greatest, and how great it is there.
 ///
@@ -110,7 +110,7 @@ impl<S: Scalar> Models<S> {
     #[inline(always)]
     fn offer_two(&mut self, i: usize, j: usize) {
         let (t, s) = (&self.turned[i], &self.turned[j]);
-        let e = (s.p.0 - t.p.0, s.p.1 - t.p.1);
+        let e = way(t.p, s.p);
         let squared = dot(e, e);
         let hessian = t.hessian.blend(s.hessian, share_of_second(t.p, e));
         // Points no farther apart than rounding are one.

@@ -111,7 +111,7 @@ impl<V: Vector> BestPlane<V> {
         }
         let n = frame.normal(self.alpha.plane()).unit().ok_or(Stop::InDoubt)?;
         bracket.advance(n, self.point)?;
-        bracket.close(point, witness, high)
+        bracket.close(bracket.radius, point, witness, high)
     }
 }
 
@@ -121,10 +121,12 @@ fn swept<S: Scalar>(radius: S, alpha: Alpha<S>) -> S {
     if radius > S::ZERO { radius * alpha.length() } else { S::ZERO }
 }
 
-/// Up to three points of the body, and a combination of them that is on the ray.
+/// Up to three points of the body, and a combination of them that is on the ray: of three in anticlockwise order, a
+/// portal; or where none is known, any points, and `high` infinite.
 #[derive(Clone, Copy)]
 pub(super) struct OnLine<V: Vector> {
     pub(super) corners: [RayPoint<V>; 3],
+    /// The weights of the combination, with sum 1.
     pub(super) weights: [V::Scalar; 3],
     pub(super) len: usize,
     /// Where on the ray it is.

@@ -6,7 +6,7 @@ use num_traits::Float as _;
 use super::closing::OnLine;
 use super::ray_frame::{Alpha, RayPoint, weights_of_zero};
 use crate::curvature::turned;
-use crate::symmetric::{Across, Symmetric, dot};
+use crate::symmetric::{Across, Symmetric, dot, way};
 
 /// A support point, the plane it was found on, and how it moves from there.
 #[derive(Clone, Copy, Default)]
@@ -47,7 +47,7 @@ impl<V: Vector> RayPiece<V> {
         let number = V::Scalar::from_f64;
         let (through, p) = (alpha.tau(&self.p), self.p.across());
         let alone = QuadraticModel { tau: through, p, hessian: Symmetric::ZERO };
-        let change = self.alpha.change_to(alpha);
+        let change = way(self.alpha.across(), alpha.across());
         let angle = dot(change, change) / alpha.length_squared();
         if angle > number(FAR * FAR) || self.hessian.is_zero() {
             return alone;
@@ -68,7 +68,8 @@ impl<V: Vector> RayPiece<V> {
     /// to third order, and no farther than by the body's size.
     fn is_same_as(&self, other: &Self, noise: V::Scalar) -> bool {
         let number = V::Scalar::from_f64;
-        let expected = self.hessian.blend(other.hessian, number(0.5)).times(self.alpha.change_to(other.alpha));
+        let expected =
+            self.hessian.blend(other.hessian, number(0.5)).times(way(self.alpha.across(), other.alpha.across()));
         let (moved, _) = self.p.edge_to(&other.p);
         let error = (moved.0 - expected.0, moved.1 - expected.1);
         let squared = dot(moved, moved);

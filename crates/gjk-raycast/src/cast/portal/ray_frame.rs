@@ -16,7 +16,7 @@ use crate::cast::Stop;
 use crate::cast::bracket::Bracket;
 use crate::cast::line::Line;
 use crate::curvature;
-use crate::symmetric::{Across, Symmetric, axes_across, cross, dot};
+use crate::symmetric::{Across, Symmetric, axes_across, cross, dot, way};
 
 /// A support point as it is seen along the ray.
 #[derive(Clone, Copy, Default)]
@@ -43,7 +43,7 @@ impl<V: Vector> RayPoint<V> {
 
     /// The vector from `self` to `to`, `(u, v)` and `t`.
     pub(super) fn edge_to(&self, to: &Self) -> (Across<V::Scalar>, V::Scalar) {
-        ((to.u - self.u, to.v - self.v), to.t - self.t)
+        (way(self.across(), to.across()), to.t - self.t)
     }
 }
 
@@ -65,10 +65,6 @@ impl<S: Scalar> Alpha<S> {
     /// The `τ` of the plane through a point.
     pub(super) fn tau<V: Vector<Scalar = S>>(self, p: &RayPoint<V>) -> S {
         p.t - self.a * p.u - self.b * p.v
-    }
-
-    pub(super) fn change_to(self, to: Self) -> Across<S> {
-        (to.a - self.a, to.b - self.b)
     }
 
     pub(super) fn across(self) -> Across<S> {

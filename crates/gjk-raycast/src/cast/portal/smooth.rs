@@ -124,7 +124,7 @@ fn in_ball<V: Vector>(
     let change = frame.vector((-x, -y));
     let witness = frame.turned(bracket.body, n, change, p.witness);
     bracket.advance(unit, p.point).ok()?;
-    let found = bracket.close_in(radius, p.point - unit * (radius - bracket.radius), witness, high).ok()?;
+    let found = bracket.close(radius, p.point - unit * (radius - bracket.radius), witness, high).ok()?;
     Some(RayContact { normal: (n + change).unit(), ..found })
 }
 

@@ -20,7 +20,7 @@ use super::pieces::{RayPiece, RayPieces};
 use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint, weights_of_zero};
 use crate::cast::bracket::Bracket;
 use crate::cast::{RayContact, Stop};
-use crate::symmetric::{Across, Symmetric};
+use crate::symmetric::{Across, Symmetric, way};
 
 /// Support points of the search.
 const MAX_STEPS: usize = 40;
@@ -37,7 +37,7 @@ const FAR: f64 = 8.0;
 pub(super) fn sqp<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
-    mut portal: Portal<V>,
+    mut portal: OnLine<V>,
     mut best: BestPlane<V>,
     tilt: V::Scalar,
 ) -> Result<RayContact<V>, Stop<V>> {
@@ -54,7 +54,7 @@ pub(super) fn sqp<V: Vector>(
         let far = tilt * V::Scalar::from_f64(FAR) * newest.alpha.length();
         let is_near = |(x, y): Across<_>| x * x + y * y <= far * far;
         match best_plane(pieces.all(), newest.alpha, bracket.noise, Scalar::ONE) {
-            Some((to, _)) if is_enclosed || is_near(newest.alpha.change_to(to)) => alpha = to,
+            Some((to, _)) if is_enclosed || is_near(way(newest.alpha.across(), to.across())) => alpha = to,
             _ if is_enclosed => {}
             _ => return Err(Stop::InDoubt),
         }
@@ -76,7 +76,7 @@ pub(super) fn sqp<V: Vector>(
         }
         // A segment first, since the weights in a flat triangle may be nothing but rounding.
         let passed = pieces.passed(bracket.noise).filter(|below| below.high >= start);
-        for below in [passed, Some(OnLine::from(portal))].into_iter().flatten() {
+        for below in [passed, Some(portal)].into_iter().flatten() {
             if best.alpha.is_within(below.high - best.tau, bracket.tolerance()) {
                 match best.close_at(bracket, frame, &below) {
                     Err(Stop::InDoubt) => {}
@@ -128,7 +128,7 @@ impl<S: Scalar> Steps<S> {
         &mut self,
         bracket: &Bracket<'_, V>,
         pieces: &RayPieces<V>,
-        portal: &Portal<V>,
+        portal: &OnLine<V>,
         best: &BestPlane<V>,
         alpha: Alpha<S>,
     ) -> Option<Alpha<S>> {
@@ -152,21 +152,10 @@ impl<S: Scalar> Steps<S> {
     }
 }
 
-/// Three points of the body, in anticlockwise order, whose triangle the line runs through; or where none is known, any,
-/// and `high` infinite.
-#[derive(Clone, Copy)]
-pub(super) struct Portal<V: Vector> {
-    pub(super) corners: [RayPoint<V>; 3],
-    /// The weights of the point where the line runs through, with sum 1.
-    pub(super) weights: [V::Scalar; 3],
-    /// Where the line runs through.
-    pub(super) high: V::Scalar,
-}
-
-impl<V: Vector> Portal<V> {
+impl<V: Vector> OnLine<V> {
     /// No portal, but points of the body.
     pub(super) fn unknown(corners: [RayPoint<V>; 3]) -> Self {
-        Self { corners, weights: [V::Scalar::ZERO; 3], high: V::Scalar::infinity() }
+        Self { corners, weights: [V::Scalar::ZERO; 3], len: 3, high: V::Scalar::infinity() }
     }
 
     /// Its plane.
@@ -196,11 +185,5 @@ impl<V: Vector> Portal<V> {
                 return;
             }
         }
-    }
-}
-
-impl<V: Vector> From<Portal<V>> for OnLine<V> {
-    fn from(portal: Portal<V>) -> Self {
-        Self { corners: portal.corners, weights: portal.weights, len: 3, high: portal.high }
     }
 }

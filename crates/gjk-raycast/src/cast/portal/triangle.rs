@@ -13,10 +13,10 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::OF_FACE;
-use super::closing::BestPlane;
+use super::closing::{BestPlane, OnLine};
 use super::pieces::is_surrounded;
 use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
-use super::sqp::{Portal, sqp};
+use super::sqp::sqp;
 use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
 use crate::cast::{RayContact, Stop};
@@ -64,7 +64,7 @@ pub(super) fn triangle<V: Vector>(
         }
         // Pieces known from so near tell where to look next before the line is enclosed.
         if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.body.is_curved() {
-            match sqp(bracket, frame, Portal::unknown([p, p, q]), planes.best, tilt) {
+            match sqp(bracket, frame, OnLine::unknown([p, p, q]), planes.best, tilt) {
                 Err(Stop::InDoubt) => {}
                 found => return found,
             }
@@ -75,7 +75,7 @@ pub(super) fn triangle<V: Vector>(
         // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a
         // smooth piece may be found that it runs through.
         None if planes.best.is_known() && frame.is_curved(bracket.body, frame.normal(planes.best.alpha.plane())) => {
-            sqp(bracket, frame, Portal::unknown([p, q, q]), planes.best, tilt)
+            sqp(bracket, frame, OnLine::unknown([p, q, q]), planes.best, tilt)
         }
         None => Err(Stop::InDoubt),
     }
@@ -262,11 +262,11 @@ impl<V: Vector> Triangle<V> {
         }
     }
 
-    fn anticlockwise(&self, [wp, wq, ws]: [V::Scalar; 3], high: V::Scalar) -> Portal<V> {
+    fn anticlockwise(&self, [wp, wq, ws]: [V::Scalar; 3], high: V::Scalar) -> OnLine<V> {
         let [p, q, s] = self.corners;
         let (corners, weights) =
             if self.turn > Scalar::ZERO { ([p, q, s], [wp, wq, ws]) } else { ([q, p, s], [wq, wp, ws]) };
-        Portal { corners, weights, high }
+        OnLine { corners, weights, len: 3, high }
     }
 }
 
