@@ -8,6 +8,7 @@ mod certain;
 mod line;
 mod outline;
 mod portal;
+mod ray_frame;
 mod start;
 
 use convex_support::{Scalar, Vector};

@@ -8,9 +8,10 @@ use num_traits::Float as _;
 
 use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
+use crate::cast::ray_frame::RayFrame;
 use crate::curvature::{between, is_stiff_across, share_of_second, swept, turned};
 use crate::simplex::{MAX_POINTS, Simplex};
-use crate::symmetric::{Across, Symmetric, axes_across, dot, way};
+use crate::symmetric::{Across, Symmetric, dot, way};
 
 /// Points of the swept body, each with the unit vector along which it is the support point; the newest last.
 pub(super) struct Recent<V: Vector>(Simplex<V>);
@@ -47,7 +48,7 @@ pub(super) fn newton<V: Vector>(
     if !bracket.body.is_curved() {
         return None;
     }
-    let seen = SeenAlongRay { bracket, axes: axes_across(bracket.line().direction) };
+    let seen = SeenAlongRay { bracket, frame: RayFrame::new(bracket.line()) };
     let mut found = [(V::ZERO, V::ZERO); 2 * MAX_POINTS];
     let mut len = 0;
     // The corners of the simplex first, since what was found last was found nearest the answer.
@@ -83,7 +84,7 @@ pub(super) fn newton<V: Vector>(
     if !(angle <= V::Scalar::from_f64(LARGEST)) {
         return None;
     }
-    (n + seen.axes[0] * d.0 + seen.axes[1] * d.1).unit().map(|to| (to, angle))
+    (n + seen.frame.vector(d)).unit().map(|to| (to, angle))
 }
 
 /// A smooth piece at a plane that the ray crosses: how far it reaches along the normal, its point as seen from the
@@ -104,12 +105,12 @@ type SecondPiece<S> = (Option<PieceAlongRay<S>>, Option<Across<S>>);
 /// Points and planes as they are seen along the ray; normals have length one against it.
 struct SeenAlongRay<'k, 'b, V: Vector> {
     bracket: &'k Bracket<'b, V>,
-    axes: [V; 2],
+    frame: RayFrame<V>,
 }
 
 impl<V: Vector> SeenAlongRay<'_, '_, V> {
     fn across(&self, v: V) -> Across<V::Scalar> {
-        (v.dot(self.axes[0]), v.dot(self.axes[1]))
+        self.frame.split(v).0
     }
 
     /// A normal, if the ray crosses the plane.
@@ -122,7 +123,7 @@ impl<V: Vector> SeenAlongRay<'_, '_, V> {
     /// The piece of a point that was found along `n`, turned to another normal.
     fn piece(&self, point: V, n: V, to: V) -> PieceAlongRay<V::Scalar> {
         let found = self.across(point - self.bracket.line().foot);
-        let mut hessian = self.bracket.body.hessian(n, self.axes);
+        let mut hessian = self.bracket.body.hessian(n, self.frame.axes);
         let is_vertex = hessian.is_zero();
         // A radius alone needs no iteration.
         if !is_vertex {

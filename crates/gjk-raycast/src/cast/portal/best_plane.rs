@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 
 use super::pieces::{MAX_PIECES, QuadraticModel, RayPiece};
-use super::ray_frame::Alpha;
+use crate::cast::ray_frame::Alpha;
 use crate::curvature::{between, is_stiff_across, share_of_second};
 use crate::symmetric::{Across, cross, dot, way};
 

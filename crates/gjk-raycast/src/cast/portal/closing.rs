@@ -4,9 +4,9 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::ray_frame::{Alpha, RayFrame, RayPoint};
 use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
+use crate::cast::ray_frame::{Alpha, RayFrame, RayPoint};
 use crate::cast::{RayContact, Stop};
 
 /// The plane that is crossed last, of those known.

@@ -1,13 +1,12 @@
 //! The ray cast as it is seen along the ray, where it is the search for a plane by two unknowns, and for a point of the
 //! line in a triangle of support points.
 //!
-//! What is decided here, by signs and by planes in the coordinates of the [frame](ray_frame), is where to look next.
+//! What is decided here, by signs and by planes in the coordinates of the [frame](super::ray_frame), is where to look next.
 //! Where the [bracket](super::bracket) finds that in doubt, so is the answer, and Algorithm 3 takes over.
 
 mod best_plane;
 mod closing;
 mod pieces;
-mod ray_frame;
 mod rounded;
 mod smooth;
 mod sqp;
@@ -18,7 +17,7 @@ use num_traits::Float as _;
 
 use super::bracket::Bracket;
 use super::{RayContact, Stop};
-use ray_frame::RayFrame;
+use crate::cast::ray_frame::RayFrame;
 use rounded::rounded;
 use smooth::smooth;
 use triangle::triangle;

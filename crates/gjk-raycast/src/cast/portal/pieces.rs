@@ -4,7 +4,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::closing::OnLine;
-use super::ray_frame::{Alpha, RayPoint, weights_of_zero};
+use crate::cast::ray_frame::{Alpha, RayPoint, weights_of_zero};
 use crate::curvature::turned;
 use crate::symmetric::{Across, Symmetric, dot, way};
 

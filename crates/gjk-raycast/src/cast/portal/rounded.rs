@@ -15,9 +15,9 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::closing::BestPlane;
-use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use super::triangle::MAX_EXCHANGES;
 use crate::cast::bracket::Bracket;
+use crate::cast::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use crate::cast::{RayContact, Stop};
 use crate::symmetric::{Across, cross, dot};
 

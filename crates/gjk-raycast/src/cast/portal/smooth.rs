@@ -10,8 +10,8 @@ use num_traits::Float as _;
 
 use super::closing::BestPlane;
 use super::pieces::{RayPiece, RayPieces};
-use super::ray_frame::{Alpha, RayFrame, RayPoint};
 use crate::cast::bracket::Bracket;
+use crate::cast::ray_frame::{Alpha, RayFrame, RayPoint};
 use crate::cast::{RayContact, Stop};
 use crate::symmetric::{Symmetric, dot};
 

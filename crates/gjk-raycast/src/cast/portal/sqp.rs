@@ -17,8 +17,8 @@ use num_traits::Float as _;
 use super::best_plane::best_plane;
 use super::closing::{BestPlane, OnLine};
 use super::pieces::{RayPiece, RayPieces};
-use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint, weights_of_zero};
 use crate::cast::bracket::Bracket;
+use crate::cast::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint, weights_of_zero};
 use crate::cast::{RayContact, Stop};
 use crate::symmetric::{Across, Symmetric, way};
 

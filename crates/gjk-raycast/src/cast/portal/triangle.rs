@@ -15,10 +15,10 @@ use num_traits::Float as _;
 use super::OF_FACE;
 use super::closing::{BestPlane, OnLine};
 use super::pieces::is_surrounded;
-use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use super::sqp::sqp;
 use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
+use crate::cast::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use crate::cast::{RayContact, Stop};
 use crate::symmetric::dot;
 

@@ -11,10 +11,10 @@
 
 use convex_support::{Scalar, Vector};
 
+use super::Stop;
+use super::bracket::Bracket;
+use super::line::Line;
 use crate::body::{CastBody, PointPair};
-use crate::cast::Stop;
-use crate::cast::bracket::Bracket;
-use crate::cast::line::Line;
 use crate::curvature;
 use crate::symmetric::{Across, Symmetric, axes_across, cross, dot, way};
 
