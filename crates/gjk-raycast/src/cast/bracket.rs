@@ -76,6 +76,8 @@ pub(super) struct Bracket<'a, V: Vector> {
     pub(super) error: V::Scalar,
     /// Whether the core is a single point.
     pub(super) is_point: bool,
+    /// Whether the [Hessian](crate::body::TracedSupport::hessian) of the core may be anything but zero.
+    pub(super) is_curved: bool,
     /// The unit of length.
     pub(super) scale: V::Scalar,
     observer: Observer<'a, V>,
@@ -126,6 +128,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         let measure = if size > zero { size } else { (ray.source - origin).norm() };
         let scale = power_of_two_near(measure);
         body.set_scale(scale);
+        let is_curved = body.is_curved();
         let per_unit = reciprocal_of_power(scale);
         let (radius, size) = (radius * per_unit, size * per_unit);
         let body_error = body_error * per_unit + lost_to_underflow(scale);
@@ -146,6 +149,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
             noise,
             error,
             is_point: extent == zero,
+            is_curved,
             scale,
             observer: observer.by_ref(),
             iterations: 0,

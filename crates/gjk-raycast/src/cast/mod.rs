@@ -27,7 +27,7 @@ pub(crate) use line::{CastRay, LocalRay, Part};
 use outline::bound_entry;
 use portal::portal;
 use start::SettleFn;
-pub(crate) use start::{RayBodies, RayOf, settle_start};
+pub(crate) use start::{RayBodies, RayOf, settle_start, sliding};
 
 /// What is quicker than Algorithm 3 alone, and the second look at what that leaves open.
 #[allow(clippy::type_complexity, reason = "it is said once")]

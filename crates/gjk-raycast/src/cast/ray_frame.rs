@@ -197,13 +197,14 @@ impl<V: Vector> RayFrame<V> {
     ) -> Result<RayPoint<V>, Stop<V>> {
         let mut seen = self.support(bracket, self.normal(plane))?;
         // No polytope is asked where it was looked at along.
-        seen.alpha = bracket.body.is_curved().then(|| plane.alpha());
+        seen.alpha = bracket.is_curved.then(|| plane.alpha());
         Ok(seen)
     }
 
     /// Whether the core's support point moves as a plane turns.
-    pub(super) fn is_curved(&self, body: &dyn CastBody<Vector = V>, n: V) -> bool {
-        body.is_curved() && !body.hessian(n, self.axes).is_zero()
+    #[inline(always)]
+    pub(super) fn is_curved(&self, bracket: &Bracket<'_, V>, n: V) -> bool {
+        bracket.is_curved && !bracket.body.hessian(n, self.axes).is_zero()
     }
 
     /// The derivative of `(u, v)` at `n`: that of the core's support point, and of the radius that it is moved by.

@@ -45,7 +45,7 @@ pub(super) fn newton<V: Vector>(
     recent: &Recent<V>,
     model_error: V::Scalar,
 ) -> Option<(V, V::Scalar)> {
-    if !bracket.body.is_curved() {
+    if !bracket.is_curved {
         return None;
     }
     let seen = SeenAlongRay { bracket, frame: RayFrame::new(bracket.line()) };

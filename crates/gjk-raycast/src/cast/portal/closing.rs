@@ -79,17 +79,6 @@ impl<V: Vector> BestPlane<V> {
         Ok(true)
     }
 
-    /// Closes the bracket between this plane and a point of the body.
-    #[inline(always)]
-    pub(super) fn close_at(
-        &self,
-        bracket: &mut Bracket<'_, V>,
-        frame: &RayFrame<V>,
-        below: &OnLine<V>,
-    ) -> Result<RayContact<V>, Stop<V>> {
-        self.close(bracket, frame, below.corners(), below.weights(), below.high)
-    }
-
     /// Closes the bracket between this plane and the weighted sum of the corners, which is on the line at `high`.
     #[inline(always)]
     pub(super) fn close(

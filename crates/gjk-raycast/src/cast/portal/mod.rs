@@ -31,7 +31,7 @@ const OF_FACE: f64 = 0.03;
 /// from aside is known to the third order of that angle; where a polytope is looked at along, it is the same.
 fn tilt<V: Vector>(bracket: &Bracket<'_, V>, error: V::Scalar) -> V::Scalar {
     let of_face = V::Scalar::from_f64(OF_FACE);
-    if bracket.body.is_curved() { (error + error).max(V::Scalar::EPSILON.sqrt()).min(of_face) } else { of_face }
+    if bracket.is_curved { (error + error).max(V::Scalar::EPSILON.sqrt()).min(of_face) } else { of_face }
 }
 
 /// Closes the bracket, or finds a plane that the whole ray is before.
@@ -42,7 +42,7 @@ pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayConta
     let told = bracket.options.warm_start.and_then(|warm| Some((warm.axis.unit()?, tilt(bracket, warm.error()))));
     let (first, tilt) = told.unwrap_or_else(|| (bracket.x(), Scalar::ONE));
     let core = RayFrame::new(bracket.line());
-    let curved = core.is_curved(bracket.body, first);
+    let curved = core.is_curved(bracket, first);
     if !curved && bracket.radius > Scalar::ZERO {
         return rounded(bracket, &core, first, tilt);
     }

@@ -78,7 +78,7 @@ pub(super) fn rounded<V: Vector>(
         if best.alpha.is_within(high - best.tau, tolerance) {
             return best.close(bracket, frame, kept.points(), &at.weights, at.tau);
         }
-        if frame.is_curved(bracket.body, frame.normal(alpha.plane())) {
+        if frame.is_curved(bracket, frame.normal(alpha.plane())) {
             return Err(Stop::InDoubt);
         }
         let next = frame.support_of(bracket, alpha.plane())?;

@@ -78,7 +78,7 @@ pub(super) fn sqp<V: Vector>(
         let passed = pieces.passed(bracket.noise).filter(|below| below.high >= start);
         for below in [passed, Some(portal)].into_iter().flatten() {
             if best.alpha.is_within(below.high - best.tau, bracket.tolerance()) {
-                match best.close_at(bracket, frame, &below) {
+                match best.close(bracket, frame, below.corners(), below.weights(), below.high) {
                     Err(Stop::InDoubt) => {}
                     found => return found,
                 }

@@ -63,7 +63,7 @@ pub(super) fn triangle<V: Vector>(
             return planes.shrink(bracket, found);
         }
         // Pieces known from so near tell where to look next before the line is enclosed.
-        if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.body.is_curved() {
+        if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.is_curved {
             match sqp(bracket, frame, OnLine::unknown([p, p, q]), planes.best, tilt) {
                 Err(Stop::InDoubt) => {}
                 found => return found,
@@ -74,7 +74,7 @@ pub(super) fn triangle<V: Vector>(
         Some(found) => planes.shrink(bracket, found),
         // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a
         // smooth piece may be found that it runs through.
-        None if planes.best.is_known() && frame.is_curved(bracket.body, frame.normal(planes.best.alpha.plane())) => {
+        None if planes.best.is_known() && frame.is_curved(bracket, frame.normal(planes.best.alpha.plane())) => {
             sqp(bracket, frame, OnLine::unknown([p, q, q]), planes.best, tilt)
         }
         None => Err(Stop::InDoubt),
@@ -151,7 +151,7 @@ impl<V: Vector> Planes<'_, V> {
         q: &mut RayPoint<V>,
     ) -> Result<Option<Triangle<V>>, Stop<V>> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-        let most = if bracket.body.is_curved() { MAX_OUTSIDE / 2 } else { MAX_OUTSIDE };
+        let most = if bracket.is_curved { MAX_OUTSIDE / 2 } else { MAX_OUTSIDE };
         for _ in 0..most {
             let area = p.cross(q);
             let turn = one.copysign(area);
@@ -208,7 +208,7 @@ impl<V: Vector> Planes<'_, V> {
                 portal.bound_entry(bracket, plane, high);
                 return Ok(found);
             }
-            if bracket.body.is_curved() && self.frame.is_curved(bracket.body, self.frame.normal(plane)) {
+            if self.frame.is_curved(bracket, self.frame.normal(plane)) {
                 return sqp(bracket, self.frame, portal.anticlockwise(weights, high), self.best, self.tilt);
             }
             let before = self.best.tau;
