@@ -110,24 +110,13 @@ fn swept<S: Scalar>(radius: S, alpha: Alpha<S>) -> S {
     if radius > S::ZERO { radius * alpha.length() } else { S::ZERO }
 }
 
-/// Up to three points of the body, and a combination of them that is on the ray: of three in anticlockwise order, a
-/// portal; or where none is known, any points, and `high` infinite.
+/// Three points of the body, and a combination of them that is on the ray: of a portal in anticlockwise order; or where
+/// none is known, any points, and `high` infinite.
 #[derive(Clone, Copy)]
 pub(super) struct OnLine<V: Vector> {
     pub(super) corners: [RayPoint<V>; 3],
     /// The weights of the combination, with sum 1.
     pub(super) weights: [V::Scalar; 3],
-    pub(super) len: usize,
     /// Where on the ray it is.
     pub(super) high: V::Scalar,
-}
-
-impl<V: Vector> OnLine<V> {
-    pub(super) fn corners(&self) -> &[RayPoint<V>] {
-        &self.corners[..self.len]
-    }
-
-    pub(super) fn weights(&self) -> &[V::Scalar] {
-        &self.weights[..self.len]
-    }
 }

@@ -1,8 +1,8 @@
 //! The ray cast as it is seen along the ray, where it is the search for a plane by two unknowns, and for a point of the
 //! line in a triangle of support points.
 //!
-//! What is decided here, by signs and by planes in the coordinates of the [frame](super::ray_frame), is where to look next.
-//! Where the [bracket](super::bracket) finds that in doubt, so is the answer, and Algorithm 3 takes over.
+//! What is decided here, by signs and by planes in the coordinates of the [frame](super::ray_frame), is where to look
+//! next. Where the [bracket](super::bracket) finds that in doubt, so is the answer, and Algorithm 3 takes over.
 
 mod best_plane;
 mod closing;

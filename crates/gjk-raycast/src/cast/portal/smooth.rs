@@ -59,7 +59,7 @@ pub(super) fn smooth<V: Vector>(
                     return Err(Stop::InDoubt);
                 }
                 if below.high - best.tau <= tolerance * best.alpha.length() {
-                    return best.close(bracket, frame, below.corners(), below.weights(), below.high);
+                    return best.close(bracket, frame, &below.corners, &below.weights, below.high);
                 }
             }
             // Near the end, Newton's step H·δ = −(u, v) is the same, and does not cancel.

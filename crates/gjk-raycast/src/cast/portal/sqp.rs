@@ -76,9 +76,9 @@ pub(super) fn sqp<V: Vector>(
         }
         // A segment first, since the weights in a flat triangle may be nothing but rounding.
         let passed = pieces.passed(bracket.noise).filter(|below| below.high >= start);
-        for below in [passed, Some(portal)].into_iter().flatten() {
+        for below in passed.into_iter().chain([portal]) {
             if best.alpha.is_within(below.high - best.tau, bracket.tolerance()) {
-                match best.close(bracket, frame, below.corners(), below.weights(), below.high) {
+                match best.close(bracket, frame, &below.corners, &below.weights, below.high) {
                     Err(Stop::InDoubt) => {}
                     found => return found,
                 }
@@ -155,7 +155,7 @@ impl<S: Scalar> Steps<S> {
 impl<V: Vector> OnLine<V> {
     /// No portal, but points of the body.
     pub(super) fn unknown(corners: [RayPoint<V>; 3]) -> Self {
-        Self { corners, weights: [V::Scalar::ZERO; 3], len: 3, high: V::Scalar::infinity() }
+        Self { corners, weights: [V::Scalar::ZERO; 3], high: V::Scalar::infinity() }
     }
 
     /// Its plane.

@@ -266,7 +266,7 @@ impl<V: Vector> Triangle<V> {
         let [p, q, s] = self.corners;
         let (corners, weights) =
             if self.turn > Scalar::ZERO { ([p, q, s], [wp, wq, ws]) } else { ([q, p, s], [wq, wp, ws]) };
-        OnLine { corners, weights, len: 3, high }
+        OnLine { corners, weights, high }
     }
 }
 
