@@ -114,7 +114,7 @@ fn search<V: Vector, const ALL: bool>(bracket: &mut Bracket<'_, V>) -> Result<Ra
             found => return found,
         }
         match if V::DIM == 3 { portal(bracket) } else { Err(Stop::InDoubt) } {
-            Err(Stop::InDoubt) => {}
+            Err(Stop::InDoubt | Stop::Touches(_)) => {}
             found => return found,
         }
         if V::DIM == 3 && bracket.options.warm_start.is_some() {
@@ -145,6 +145,8 @@ pub(crate) enum Stop<V> {
     Exhausted(Status),
     /// This search cannot tell; another may.
     InDoubt,
+    /// Nor can it here, where the line touches the body, to rounding; moved by this vector it runs inside.
+    Touches(V),
 }
 
 /// What [`cast`] found; λ in units of the ray's direction.
@@ -199,7 +201,7 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
             (Outcome::Miss(Miss { axis: bracket.axis_of_miss(n) }), (infinity, infinity), Status::Converged)
         }
         Err(Stop::Exhausted(status)) => (Outcome::Undecided, bracket.bounds(None), status),
-        Err(Stop::InDoubt) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
+        Err(Stop::InDoubt | Stop::Touches(_)) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
     };
     let is_open = matches!(outcome, Outcome::Hit(_)) && bracket.is_worth_another_look();
     let (iterations, scale) = (bracket.iterations, bracket.scale);

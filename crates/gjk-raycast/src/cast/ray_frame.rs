@@ -108,6 +108,7 @@ pub(super) struct RayPlane<S> {
 impl<S: Scalar> RayPlane<S> {
     /// The plane through three points: that rises by `g` along `e` and by `h` along `f`, the edges from the first one,
     /// so that `e·α = g` and `f·α = h`; `c = e×f` is twice the area of the triangle.
+    #[inline(always)]
     pub(super) fn through<V: Vector<Scalar = S>>([p, q, s]: [&RayPoint<V>; 3]) -> Self {
         let ((e, g), (f, h)) = (p.edge_to(q), p.edge_to(s));
         Self { a: g * f.1 - h * e.1, b: e.0 * h - f.0 * g, c: cross(e, f) }
@@ -123,6 +124,7 @@ impl<S: Scalar> RayPlane<S> {
 #[derive(Clone, Copy)]
 pub(super) struct RayFrame<V: Vector> {
     pub(super) axes: [V; 2],
+    /// The line; or where that only touches the body, one that is nearer to it by less than rounding.
     pub(super) line: Line<V>,
     /// The part of the body's radius that support points are moved by: none where the search sweeps the core by itself.
     pub(super) radius: V::Scalar,

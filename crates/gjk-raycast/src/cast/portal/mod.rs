@@ -46,7 +46,7 @@ pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayConta
     if !curved && bracket.radius > Scalar::ZERO {
         return rounded(bracket, &core, first, tilt);
     }
-    let frame = RayFrame { radius: bracket.radius, ..core };
+    let mut frame = RayFrame { radius: bracket.radius, ..core };
     let mut seen = None;
     if curved {
         match smooth(bracket, &frame, first, tilt < Scalar::ONE, &mut seen) {
@@ -54,5 +54,12 @@ pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayConta
             found => return found,
         }
     }
-    triangle(bracket, &frame, first, seen, tilt)
+    // A second time where the line was found to touch the body, and is moved inward.
+    for _ in 0..2 {
+        match triangle(bracket, &frame, first, seen.take(), tilt) {
+            Err(Stop::Touches(inward)) => frame.line.foot += inward,
+            found => return found,
+        }
+    }
+    Err(Stop::InDoubt)
 }

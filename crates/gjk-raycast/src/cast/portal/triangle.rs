@@ -289,7 +289,7 @@ fn mixed<V: Vector>(frame: &RayFrame<V>, p: &RayPoint<V>, q: &RayPoint<V>) -> Op
 }
 
 /// The support point along a vector across the ray, if the plane there does not separate and the point is beyond the
-/// line.
+/// line. Where the line touches the body there, to rounding, it is to pass a little farther inside.
 #[cold]
 #[inline(never)]
 fn support_across<V: Vector>(
@@ -301,5 +301,12 @@ fn support_across<V: Vector>(
     let p: RayPoint<_> = frame.support(bracket, across)?;
     bracket.advance(across, p.point)?;
     let beyond = (p.point - frame.line.foot).dot(across) + frame.radius;
-    if beyond > Scalar::ZERO { Ok(p) } else { Err(Stop::InDoubt) }
+    if beyond > Scalar::ZERO {
+        return Ok(p);
+    }
+    let inward = bracket.noise * V::Scalar::from_f64(0.5);
+    if bracket.radius == Scalar::ZERO && frame.line.foot == bracket.line().foot && beyond > -inward {
+        return Err(Stop::Touches(-across * inward));
+    }
+    Err(Stop::InDoubt)
 }
