@@ -185,14 +185,10 @@ fn late<V: Vector>(
 /// What a cast says of a ray.
 #[inline(always)]
 fn answer<V: Vector>(cast: ObstacleCast<V>, ray: Ray<V>) -> RayCast<V> {
-    let outcome = match cast.outcome {
-        Outcome::Hit(CastHit { lambda, normal, .. }) => {
-            let point = if lambda > Scalar::ZERO { ray.at(lambda) } else { ray.source };
-            Outcome::Hit(RayHit { lambda, point, normal })
-        }
-        Outcome::Miss(miss) => Outcome::Miss(miss),
-        Outcome::Undecided => Outcome::Undecided,
-    };
+    let outcome = cast.outcome.map(|CastHit { lambda, normal, .. }| {
+        let point = if lambda > Scalar::ZERO { ray.at(lambda) } else { ray.source };
+        RayHit { lambda, point, normal }
+    });
     let status = cast.status.of(&outcome, cast.upper < V::Scalar::infinity());
     RayCast { outcome, lower: cast.lower, upper: cast.upper, status, iterations: cast.iterations }
 }

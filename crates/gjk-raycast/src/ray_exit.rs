@@ -85,16 +85,12 @@ compiled_once! {
         let forward = LocalRay::new(ray, origin, cast.scale);
         let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
         let (lower, upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);
-        let answer =
-            RayExit { outcome: Outcome::Undecided, lower, upper, status: cast.status, iterations: cast.iterations };
-        match cast.outcome {
-            Outcome::Hit(CastHit { lambda, normal, .. }) => {
-                let lambda = reverse(lambda);
-                RayExit { outcome: Outcome::Hit(RayHit { lambda, point: ray.at(lambda), normal }), ..answer }
-            }
-            Outcome::Miss(miss) => RayExit { outcome: Outcome::Miss(miss), ..answer }.missed(),
-            Outcome::Undecided => answer,
-        }
+        let outcome = cast.outcome.map(|CastHit { lambda, normal, .. }| {
+            let lambda = reverse(lambda);
+            RayHit { lambda, point: ray.at(lambda), normal }
+        });
+        let answer = RayExit { outcome, lower, upper, status: cast.status, iterations: cast.iterations };
+        if outcome.is_miss() { answer.missed() } else { answer }
     }
 }
 

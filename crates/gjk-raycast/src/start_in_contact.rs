@@ -3,15 +3,13 @@
 use convex_support::{Posed, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
+use crate::cast::sliding;
 use crate::shape::{Shape, WithoutLines};
 use crate::signed_distance::signed_distance_of_any;
 use crate::{
     DistanceOptions, Impact, LinearCast, LinearCastOptions, Motion, Outcome, SignedDistance, SignedDistanceOptions,
     distance,
 };
-
-/// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
-const SLIDES: f64 = 16.0;
 
 /// How far on shapes are looked at first, in units of what they are known to; how much farther each time; and how often
 /// at most, which is more than their sizes in any precision.
@@ -81,8 +79,7 @@ impl<V: Vector> StartingPair<'_, V> {
         }
         let velocity = motion.velocity_a - motion.velocity_b;
         let (speed, closing) = (velocity.norm(), -start.normal.dot(velocity));
-        let slides = V::Scalar::from_f64(SLIDES) * V::Scalar::EPSILON * speed;
-        if !(closing > slides) {
+        if !(closing > sliding(speed)) {
             return Some(InContact { start, leaves_along: Some(start.normal) });
         }
         // Where the depth is known to rounding, what nowhere shows slides.

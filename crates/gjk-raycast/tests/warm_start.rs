@@ -139,3 +139,24 @@ fn a_warm_start_that_is_wrong_does_no_harm() {
         }
     }
 }
+
+/// Where a warm cast takes all support points that it may, its bracket is the answer: a cold cast without any knows
+/// less.
+#[test]
+fn a_warm_cast_that_uses_up_its_iterations_keeps_its_bracket() {
+    let mut random = Random(11);
+    let mut hits = 0;
+    for _ in 0..32 {
+        let [a, b] = [hull(&mut random, 40), cylinder(&mut random)];
+        let a = Posed::translated(a, direction(&mut random) * 4.0).expect(VALID);
+        let motion = Motion { velocity_a: -a.translation(), ..Motion::default() };
+        let cold = linear_cast(&a, &b, motion, LinearCastOptions::new()).expect(VALID);
+        let Some(hit) = cold.outcome.hit() else { continue };
+        let options = LinearCastOptions::new().with_axis(hit.normal.expect("on the way")).with_method(CastMethod::Gjk);
+        let warm = linear_cast(&a, &b, motion, options.with_max_iterations(1)).expect(VALID);
+        // The plane that is told is that of the contact.
+        assert!(warm.iterations == 1 && (warm.lower - hit.time).abs() < 1e-12, "{warm:?} {cold:?}");
+        hits += 1;
+    }
+    assert!(hits > 16, "{hits}");
+}

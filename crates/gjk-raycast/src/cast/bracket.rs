@@ -76,10 +76,13 @@ pub(super) struct Bracket<'a, V: Vector> {
     pub(super) error: V::Scalar,
     /// Whether the core is a single point.
     pub(super) is_point: bool,
+    /// Whether the [Hessian](crate::body::TracedSupport::hessian) of the core may be anything but zero.
+    pub(super) is_curved: bool,
     /// The unit of length.
     pub(super) scale: V::Scalar,
     observer: Observer<'a, V>,
-    iterations: usize,
+    /// The number of support points taken.
+    pub(super) iterations: usize,
     /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative
     /// where the line misses it, and the half, which is then zero.
     chord: (V::Scalar, V::Scalar),
@@ -125,6 +128,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         let measure = if size > zero { size } else { (ray.source - origin).norm() };
         let scale = power_of_two_near(measure);
         body.set_scale(scale);
+        let is_curved = body.is_curved();
         let per_unit = reciprocal_of_power(scale);
         let (radius, size) = (radius * per_unit, size * per_unit);
         let body_error = body_error * per_unit + lost_to_underflow(scale);
@@ -145,6 +149,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
             noise,
             error,
             is_point: extent == zero,
+            is_curved,
             scale,
             observer: observer.by_ref(),
             iterations: 0,
@@ -362,16 +367,11 @@ impl<'a, V: Vector> Bracket<'a, V> {
         if at_earliest > self.error { Err(Stop::Miss(n)) } else { Ok(None) }
     }
 
-    /// The contact where the last plane is crossed, if a point of the core, made of `witness`, is no farther than the
-    /// radius from the line at `high`, and that is no farther behind the plane than was asked for.
+    /// The contact where the last plane is crossed, if a point made of `witness`, about which a ball of the radius is
+    /// within the body, is no farther than that from the line at `high`, and that is no farther behind the plane than
+    /// was asked for.
     #[inline(always)]
-    pub(super) fn close(&mut self, point: V, witness: PointPair<V>, high: V::Scalar) -> Result<RayContact<V>, Stop<V>> {
-        self.close_in(self.radius, point, witness, high)
-    }
-
-    /// The same for a ball within the body, of any radius about the point.
-    #[inline(always)]
-    pub(super) fn close_in(
+    pub(super) fn close(
         &mut self,
         radius: V::Scalar,
         point: V,
@@ -487,21 +487,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
         RayContact { mu: at, normal: self.normal, witness }
     }
 
-    /// The contact where the last plane is crossed, if the core has a `point` on the line, made of `witness`, that is
-    /// no farther behind the plane than rounding.
-    pub(super) fn close_at_point(&mut self, point: V, witness: PointPair<V>) -> Option<RayContact<V>> {
-        let line = self.ray.line;
-        let aside = line.across(point - line.foot).length();
-        let mu = point.dot(line.direction);
-        let slope = self.slope_or_one();
-        let near = aside <= self.noise * V::Scalar::from_f64(0.5);
-        if !(near && (mu - self.low()) * slope <= self.noise + self.noise) {
-            return None;
-        }
-        self.high = Bound { at: mu.max(self.low()), spread: self.spread_or_one(), more: Scalar::ZERO };
-        Some(RayContact { mu: self.low_or_at(mu), normal: self.normal, witness })
-    }
-
     /// How much later the upper bound may be. The surface may be met less steeply than the plane, by what noise leaves
     /// open.
     fn delay(&self) -> V::Scalar {
@@ -545,11 +530,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
         };
         let other = other.filter(|m| (m.dot(line.direction) > zero) == (slope < zero));
         other.and_then(|m| (n * m.dot(line.direction).abs() + m * slope.abs()).unit()).unwrap_or(n)
-    }
-
-    /// The number of support points taken.
-    pub(super) fn iterations(&self) -> usize {
-        self.iterations
     }
 }
 

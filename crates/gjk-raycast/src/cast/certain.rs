@@ -132,7 +132,7 @@ pub(super) fn at_certain_entry<V: Vector>(bracket: &mut Bracket<'_, V>) -> Resul
             support(bracket, normal)?;
             let point = line.at(entry) - normal * bracket.radius;
             let witness = bracket.body.witness(point);
-            let found = bracket.close(point, witness, entry)?;
+            let found = bracket.close(bracket.radius, point, witness, entry)?;
             bracket.enter_for_certain(latest);
             Ok(found)
         }
@@ -159,17 +159,12 @@ fn support<V: Vector>(bracket: &mut Bracket<'_, V>, n: V) -> Result<(), Stop<V>>
 impl<V: Vector> ObstacleCast<V> {
     /// What is certain of a ray and a body.
     pub(crate) fn of_certain<B: CastBody<Vector = V> + ?Sized>(answer: &RayCast<V>, body: &B, ray: Ray<V>) -> Self {
-        let &RayCast { ref outcome, lower, upper, status, iterations } = answer;
+        let &RayCast { outcome, lower, upper, status, iterations } = answer;
         let Measures { origin, radius, .. } = body.measures();
-        let outcome = match *outcome {
-            Outcome::Hit(RayHit { lambda, normal, .. }) => {
-                let spot = (ray.source - origin) + ray.direction * lambda;
-                let witness = body.witness(spot - normal.unwrap_or_default() * radius);
-                Outcome::Hit(CastHit { lambda, normal, spot, witness })
-            }
-            Outcome::Miss(miss) => Outcome::Miss(miss),
-            Outcome::Undecided => Outcome::Undecided,
-        };
+        let outcome = outcome.map(|RayHit { lambda, normal, .. }| {
+            let spot = (ray.source - origin) + ray.direction * lambda;
+            CastHit { lambda, normal, spot, witness: body.witness(spot - normal.unwrap_or_default() * radius) }
+        });
         Self { outcome, lower, upper, status, iterations, is_open: false, scale: Scalar::ONE }
     }
 }

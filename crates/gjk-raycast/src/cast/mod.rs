@@ -8,6 +8,7 @@ mod certain;
 mod line;
 mod outline;
 mod portal;
+mod ray_frame;
 mod start;
 
 use convex_support::{Scalar, Vector};
@@ -26,7 +27,7 @@ pub(crate) use line::{CastRay, LocalRay, Part};
 use outline::bound_entry;
 use portal::portal;
 use start::SettleFn;
-pub(crate) use start::{RayBodies, RayOf, settle_start};
+pub(crate) use start::{RayBodies, RayOf, settle_start, sliding};
 
 /// What is quicker than Algorithm 3 alone, and the second look at what that leaves open.
 #[allow(clippy::type_complexity, reason = "it is said once")]
@@ -75,15 +76,10 @@ fn warm_cast<V: Vector>(
 ) -> ObstacleCast<V> {
     let told = RayCastOptions { max_iterations: options.max_iterations.min(MAX_WARM), ..*options };
     let warm = cast(body, ray, &told, observer);
-    let is_known = match warm.outcome {
-        Outcome::Hit(_) => warm.upper < V::Scalar::infinity(),
-        Outcome::Miss(_) => true,
-        Outcome::Undecided => false,
-    };
-    if is_known {
+    let max_iterations = options.max_iterations - warm.iterations;
+    if warm.outcome.is_certain(warm.upper < V::Scalar::infinity()) || max_iterations == 0 {
         return warm;
     }
-    let max_iterations = options.max_iterations - warm.iterations;
     let cold = cast(body, ray, &RayCastOptions { warm_start: None, max_iterations, ..*options }, observer);
     ObstacleCast { iterations: warm.iterations + cold.iterations, ..cold }
 }
@@ -208,6 +204,6 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
         Err(Stop::InDoubt | Stop::Touches(_)) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
     };
     let is_open = matches!(outcome, Outcome::Hit(_)) && bracket.is_worth_another_look();
-    let (iterations, scale) = (bracket.iterations(), bracket.scale);
+    let (iterations, scale) = (bracket.iterations, bracket.scale);
     ObstacleCast { outcome, lower, upper, status, iterations, scale, is_open }
 }

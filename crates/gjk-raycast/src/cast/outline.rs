@@ -20,8 +20,8 @@
 use convex_support::{Scalar, Vector};
 
 use super::bracket::Bracket;
-use super::line::Line;
-use crate::symmetric::{Across, axes_across, cross, dot};
+use super::ray_frame::RayFrame;
+use crate::symmetric::{Across, cross, dot, way};
 
 /// As many corners as a polygon has at most.
 const MAX_CORNERS: usize = 8;
@@ -38,11 +38,11 @@ const LATE: f64 = 32.0;
 #[inline(never)]
 pub(super) fn bound_entry<V: Vector>(bracket: &mut Bracket<'_, V>) {
     let (mu, error) = bracket.point_near_line();
-    let view = View { line: bracket.line(), axes: axes_across(bracket.line().direction) };
+    let frame = RayFrame::new(bracket.line());
     let late = mu + error * V::Scalar::from_f64(LATE);
-    let known = bracket.around.map(|points| view.polygon(points));
+    let known = bracket.around.map(|points| frame.polygon(points));
     let is_near = |known: &Polygon<_>| known.latest_entry(mu, error).is_some_and(|latest| latest <= late);
-    let Some(polygon) = known.filter(is_near).or_else(|| view.look_around(bracket, error)) else { return };
+    let Some(polygon) = known.filter(is_near).or_else(|| frame.look_around(bracket, error)) else { return };
     if let Some(latest) = polygon.latest_entry(mu, error) {
         bracket.enter_for_certain(latest);
     } else if polygon.touches_outline(error) {
@@ -50,30 +50,19 @@ pub(super) fn bound_entry<V: Vector>(bracket: &mut Bracket<'_, V>) {
     }
 }
 
-/// The line, and the axes across it.
-struct View<V: Vector> {
-    line: Line<V>,
-    axes: [V; 2],
-}
-
-impl<V: Vector> View<V> {
-    /// The unit vector across the line.
-    fn across(&self, toward: Across<V::Scalar>) -> Option<V> {
-        (self.axes[0] * toward.0 + self.axes[1] * toward.1).unit()
-    }
-
-    fn see(&self, p: V) -> ProjectedCorner<V::Scalar> {
-        let p = p - self.line.foot;
-        ProjectedCorner { across: (p.dot(self.axes[0]), p.dot(self.axes[1])), along: p.dot(self.line.direction) }
+impl<V: Vector> RayFrame<V> {
+    fn corner(&self, p: V) -> ProjectedCorner<V::Scalar> {
+        let (across, against) = self.split(p - self.line.foot);
+        ProjectedCorner { across, along: -against }
     }
 
     /// The polygon of points that are seen around the line, of which there are two in the plane.
     fn polygon(&self, points: [V; 3]) -> Polygon<V::Scalar> {
-        let [p, q, s] = points.map(|p| self.see(p));
+        let [p, q, s] = points.map(|p| self.corner(p));
         if V::DIM == 2 {
             return if p.across.0 > q.across.0 { Polygon::in_plane([p, q]) } else { Polygon::in_plane([q, p]) };
         }
-        let turns_left = cross(p.edge_to(&q), p.edge_to(&s)) > Scalar::ZERO;
+        let turns_left = cross(way(p.across, q.across), way(p.across, s.across)) > Scalar::ZERO;
         let mut polygon = Polygon::new();
         for corner in if turns_left { [p, q, s] } else { [q, p, s] } {
             polygon.insert(polygon.len, corner);
@@ -86,9 +75,9 @@ impl<V: Vector> View<V> {
     fn look_around(&self, bracket: &mut Bracket<'_, V>, error: V::Scalar) -> Option<Polygon<V::Scalar>> {
         let radius = bracket.radius;
         let mut support = |toward: Across<V::Scalar>| {
-            let n = self.across(toward)?;
+            let n = self.vector(toward).unit()?;
             let (core, _) = bracket.support(n, n, &[]).ok()?;
-            Some(self.see(core + n * radius))
+            Some(self.corner(core + n * radius))
         };
         let one = V::Scalar::ONE;
         let [right, left] = [support((one, Scalar::ZERO))?, support((-one, Scalar::ZERO))?];
@@ -124,12 +113,6 @@ struct ProjectedCorner<S> {
     along: S,
 }
 
-impl<S: Scalar> ProjectedCorner<S> {
-    fn edge_to(&self, to: &Self) -> Across<S> {
-        (to.across.0 - self.across.0, to.across.1 - self.across.1)
-    }
-}
-
 /// The side of a polygon from a corner to the next.
 #[derive(Clone, Copy, Default)]
 struct PolygonSide<S> {
@@ -144,7 +127,7 @@ struct PolygonSide<S> {
 
 impl<S: Scalar> PolygonSide<S> {
     fn new(corner: ProjectedCorner<S>, to: &ProjectedCorner<S>) -> Self {
-        let (du, dv) = corner.edge_to(to);
+        let (du, dv) = way(corner.across, to.across);
         let per_length = (du * du + dv * dv).sqrt().recip();
         Self {
             corner,

@@ -106,7 +106,7 @@ fn settle_at_start<V: Vector>(
         let at = |gap: V::Scalar| gap * near.frame.scale / closing;
         let (lambda, lower) = (at(near.gap), at(near.lower));
         let lower = lower - roundings(8.0, lower);
-        let entry = entry([a, b], direction, closing, (&from_contact(&near, zero), zero), looks);
+        let entry = entry([a, b], direction, closing, (&near, zero), looks);
         // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
         if lambda > max_lambda {
             cast.miss(axis);
@@ -144,9 +144,8 @@ fn latest_entry<V: Vector>(
     // Of a point found deep inside, no plane is one of contact.
     let is_at_plane = near.gap.abs() <= near.upper;
     let speed = direction.norm();
-    let slides = speed * V::Scalar::EPSILON * V::Scalar::from_f64(SLIDES);
-    let speed = if is_at_plane && closing > slides { closing } else { speed };
-    entry(shapes, direction, speed, (&from_contact(near, zero), zero), looks).certain()
+    let speed = if is_at_plane && closing > sliding(speed) { closing } else { speed };
+    entry(shapes, direction, speed, (near, zero), looks).certain()
 }
 
 /// The vector from a point of the target to the source, in the world's unit, where either may be moved by `astray`.
@@ -160,8 +159,10 @@ fn from_contact<V: Vector>(near: &NearContact<V>, astray: V::Scalar) -> FromCont
     FromContact { n, along: in_world(along), across: in_world(across), length: in_world(upper) }
 }
 
-/// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
-const SLIDES: f64 = 16.0;
+/// Closing speeds no greater than this are of rounding: a normal is known to a few ε.
+pub(crate) fn sliding<S: Scalar>(speed: S) -> S {
+    speed * S::EPSILON * S::from_f64(16.0)
+}
 
 /// A bound on the λ at which a ray is in the target first, if it ever is.
 #[derive(Clone, Copy)]
@@ -224,10 +225,11 @@ fn entry<V: Vector>(
     [a, b]: [Shape<'_, V>; 2],
     direction: V,
     speed: V::Scalar,
-    (from, astray): (&FromContact<V>, V::Scalar),
+    (near, astray): (&NearContact<V>, V::Scalar),
     looks: &mut Looks,
 ) -> LatestEntry<V::Scalar> {
     let (zero, number) = (V::Scalar::ZERO, V::Scalar::from_f64);
+    let from = from_contact(near, astray);
     let [core_a, core_b] = [a.core(), b.core()];
     let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
     let gap = from.length;
@@ -245,7 +247,7 @@ fn entry<V: Vector>(
         let aside = number(if dull > 0 { AT_EDGE } else { ASIDE });
         // The step is rounded, coordinate by coordinate.
         let rounded = roundings(4.0, step.norm()) + astray;
-        let there = look_after([a, &moved], from, [aside * fall, rounded], left);
+        let there = look_after([a, &moved], &from, [aside * fall, rounded], left);
         looks.iterations += there.iterations;
         if there.times > zero {
             let at = lambda / (there.times + V::Scalar::ONE);
@@ -295,7 +297,7 @@ fn latest_after_hit<V: Vector>(
     let astray = roundings(8.0, step.norm());
     let closing = near.normal.dot(direction);
     let speed = if closing > V::Scalar::ZERO { closing } else { direction.norm() };
-    let latest = lambda + entry([a, &there], direction, speed, (&from_contact(&near, astray), astray), looks).certain();
+    let latest = lambda + entry([a, &there], direction, speed, (&near, astray), looks).certain();
     Some(latest + roundings(4.0, latest))
 }
 

@@ -57,7 +57,7 @@ pub(crate) fn nearest_face<V: Vector>(points: &[V], dimension: usize) -> Option<
 }
 
 /// The closest point of the affine hull of a face, if it is in the face.
-#[inline(always)]
+#[cfg(feature = "paper")]
 pub(crate) fn closest_in_face<V: Vector>(points: &[V], face: Face, dimension: usize) -> Option<Closest<V>> {
     let mut corners = [V::ZERO; MAX_POINTS];
     let foot = project(face.of(points, &mut corners), |corner| -corner);

@@ -14,7 +14,7 @@ use convex_support::{Scalar, Vector};
 
 use crate::body::PointPair;
 pub(crate) use affine_hull::{AffineHull, project};
-pub(crate) use closest::{Closest, closest_in_face, nearest_face};
+pub(crate) use closest::{Closest, nearest_face};
 pub(crate) use regions::{cross, nearest};
 pub use sub_algorithm::SubAlgorithm;
 

@@ -22,36 +22,17 @@ use crate::gjk::Progress;
 use crate::separation::is_around_zero;
 use crate::simplex::{Closest, MAX_POINTS, Simplex, project};
 use refine::refine;
-use swept_simplex::{Entry, entry};
+use swept_simplex::entry;
 
 /// Slopes of planes, as cosines of the angle between normal and ray, below which steps along the ray gain little.
 const GRAZING: f64 = 0.1;
 
-/// Closes the bracket, or finds a plane that the whole ray is before.
+/// Closes the bracket, or finds a plane that the whole ray is before: by GJK steps until the ray touches the body, or
+/// enters the simplex of support points.
 #[cold]
 #[inline(never)]
 pub(super) fn algorithm_3<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     let mut simplex = Simplex::new();
-    let found = match approach(bracket, &mut simplex)? {
-        Approached::Touches(contact) => Ok(contact),
-        Approached::Pierces(entry) => refine(bracket, &mut simplex, entry),
-    };
-    match found {
-        Err(Stop::InDoubt) => graze(bracket, &mut simplex).ok_or(Stop::InDoubt),
-        found => found,
-    }
-}
-
-/// How the approach ends.
-enum Approached<V: Vector> {
-    /// At a point of the body.
-    Touches(RayContact<V>),
-    /// The ray enters the swept simplex.
-    Pierces(Entry<V>),
-}
-
-/// GJK steps until the ray enters the simplex of support points, or touches the body.
-fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -> Result<Approached<V>, Stop<V>> {
     let line = bracket.line();
     // The paper's v.
     let mut v = bracket.x();
@@ -79,22 +60,25 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
             simplex.push(point, n, witness);
             let found = entry(simplex.points(), line, bracket.radius, bracket.noise);
             if let Some(found) = found.filter(|e| e.mu >= bracket.earliest() - bracket.noise) {
-                return Ok(Approached::Pierces(found));
+                return match refine(bracket, &mut simplex, found) {
+                    Err(Stop::InDoubt) => graze(bracket, &mut simplex).ok_or(Stop::InDoubt),
+                    found => found,
+                };
             }
         }
         // The paper's step: the point of {x} − P closest to zero.
         let x = bracket.x();
-        let Closest { v: to_x, face, weights } = closest(bracket, simplex, |p| x - p, V::DIM)?;
+        let Closest { v: to_x, face, weights } = closest(bracket, &simplex, |p| x - p, V::DIM)?;
         let length = to_x.norm();
         if length - bracket.radius <= bracket.noise {
             // x is in the body, or no farther from it than rounding.
             simplex.retain(face, weights);
             let contact = bracket.close_at_low(to_x, simplex.weighted_witness()).ok_or(Stop::InDoubt)?;
             // Mostly a second look tells more of it.
-            if bracket.options.extra.get().is_none() && is_inside(bracket, simplex, x) {
+            if bracket.options.extra.get().is_none() && is_inside(bracket, &simplex, x) {
                 bracket.enter_for_certain(contact.mu);
             }
-            return Ok(Approached::Touches(contact));
+            return Ok(contact);
         }
         let slope = to_x.dot(line.direction) / length;
         let progress = nearing.goes_on(length);
@@ -106,15 +90,15 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
             continue;
         }
         // The same across the ray, with the whole line for x.
-        v = aside(bracket, simplex)?;
+        v = aside(bracket, &mut simplex)?;
         let length = v.norm();
         // Where nothing brings the line nearer, what the body and v are wrong by may be all that is left.
         let progress = nearing_across.goes_on(length);
         let within = if progress { bracket.noise } else { bracket.noise + bracket.error };
         if length - bracket.radius <= within {
             // With the slope of a plane ahead the ray may be past the simplex.
-            let contact = if slope < Scalar::ZERO { look_beside(bracket, simplex, v, within, beside) } else { None };
-            return contact.map(Approached::Touches).ok_or(Stop::InDoubt);
+            let contact = if slope < Scalar::ZERO { look_beside(bracket, &simplex, v, within, beside) } else { None };
+            return contact.ok_or(Stop::InDoubt);
         }
         if !progress {
             return Err(Stop::InDoubt);

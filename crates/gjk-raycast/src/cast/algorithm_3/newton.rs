@@ -8,9 +8,10 @@ use num_traits::Float as _;
 
 use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
+use crate::cast::ray_frame::RayFrame;
 use crate::curvature::{between, is_stiff_across, share_of_second, swept, turned};
 use crate::simplex::{MAX_POINTS, Simplex};
-use crate::symmetric::{Across, Symmetric, axes_across, dot};
+use crate::symmetric::{Across, Symmetric, dot, way};
 
 /// Points of the swept body, each with the unit vector along which it is the support point; the newest last.
 pub(super) struct Recent<V: Vector>(Simplex<V>);
@@ -21,16 +22,12 @@ impl<V: Vector> Recent<V> {
     }
 
     /// Adds one; another at the same point, or the oldest of three, makes place.
-    pub(super) fn push(&mut self, point: V, along: V, witness: PointPair<V>) {
+    pub(super) fn push(&mut self, point: V, along: V) {
         let known = self.0.points().iter().position(|&p| p == point);
         if let Some(out) = known.or((self.0.points().len() == 3).then_some(0)) {
             self.0.remove(out);
         }
-        self.0.push(point, along, witness);
-    }
-
-    pub(super) fn simplex(&self) -> &Simplex<V> {
-        &self.0
+        self.0.push(point, along, PointPair::default());
     }
 }
 
@@ -48,10 +45,10 @@ pub(super) fn newton<V: Vector>(
     recent: &Recent<V>,
     model_error: V::Scalar,
 ) -> Option<(V, V::Scalar)> {
-    if !bracket.body.is_curved() {
+    if !bracket.is_curved {
         return None;
     }
-    let seen = SeenAlongRay { bracket, axes: axes_across(bracket.line().direction) };
+    let seen = SeenAlongRay { bracket, frame: RayFrame::new(bracket.line()) };
     let mut found = [(V::ZERO, V::ZERO); 2 * MAX_POINTS];
     let mut len = 0;
     // The corners of the simplex first, since what was found last was found nearest the answer.
@@ -72,7 +69,7 @@ pub(super) fn newton<V: Vector>(
         (None, alone) => alone?,
         (Some(_), _) if V::DIM == 2 => return None,
         (Some(second), _) => {
-            let e = first.edge_to(&second);
+            let e = way(first.p, second.p);
             let hessian = first.hessian.blend(second.hessian, share_of_second(first.p, e));
             if !is_stiff_across(hessian, e) {
                 return None;
@@ -87,7 +84,7 @@ pub(super) fn newton<V: Vector>(
     if !(angle <= V::Scalar::from_f64(LARGEST)) {
         return None;
     }
-    (n + seen.axes[0] * d.0 + seen.axes[1] * d.1).unit().map(|to| (to, angle))
+    (n + seen.frame.vector(d)).unit().map(|to| (to, angle))
 }
 
 /// A smooth piece at a plane that the ray crosses: how far it reaches along the normal, its point as seen from the
@@ -102,24 +99,18 @@ struct PieceAlongRay<S> {
     found: Across<S>,
 }
 
-impl<S: Scalar> PieceAlongRay<S> {
-    fn edge_to(&self, other: &Self) -> Across<S> {
-        (other.p.0 - self.p.0, other.p.1 - self.p.1)
-    }
-}
-
 /// The piece to go between, if there is one, and the change to the normal that suits the first alone, if one does.
 type SecondPiece<S> = (Option<PieceAlongRay<S>>, Option<Across<S>>);
 
 /// Points and planes as they are seen along the ray; normals have length one against it.
 struct SeenAlongRay<'k, 'b, V: Vector> {
     bracket: &'k Bracket<'b, V>,
-    axes: [V; 2],
+    frame: RayFrame<V>,
 }
 
 impl<V: Vector> SeenAlongRay<'_, '_, V> {
     fn across(&self, v: V) -> Across<V::Scalar> {
-        (v.dot(self.axes[0]), v.dot(self.axes[1]))
+        self.frame.split(v).0
     }
 
     /// A normal, if the ray crosses the plane.
@@ -132,7 +123,7 @@ impl<V: Vector> SeenAlongRay<'_, '_, V> {
     /// The piece of a point that was found along `n`, turned to another normal.
     fn piece(&self, point: V, n: V, to: V) -> PieceAlongRay<V::Scalar> {
         let found = self.across(point - self.bracket.line().foot);
-        let mut hessian = self.bracket.body.hessian(n, self.axes);
+        let mut hessian = self.bracket.body.hessian(n, self.frame.axes);
         let is_vertex = hessian.is_zero();
         // A radius alone needs no iteration.
         if !is_vertex {
@@ -157,9 +148,9 @@ impl<V: Vector> SeenAlongRay<'_, '_, V> {
         let mut best = if alone.is_some() { noise } else { -V::Scalar::infinity() };
         for &(point, along) in others {
             let other = self.piece(point, along, n);
-            let e = first.edge_to(&other);
+            let e = way(p, other.p);
             // Points no farther apart than rounding are one.
-            let apart = (other.found.0 - p.0, other.found.1 - p.1);
+            let apart = way(p, other.found);
             let foretold = V::Scalar::from_f64(SAME_PIECE * SAME_PIECE) * dot(apart, apart);
             if dot(e, e) <= foretold.max(noise * noise) {
                 continue;

@@ -9,7 +9,6 @@ use crate::cast::bracket::Bracket;
 use crate::cast::line::Line;
 use crate::cast::{RayContact, Stop};
 use crate::simplex::Simplex;
-use crate::simplex::{MAX_POINTS, closest_in_face, faces};
 
 /// Exchanges of a point that gain nothing before the line is moved into the facet, and steps by curvature before the
 /// facet's own normal is taken.
@@ -48,20 +47,14 @@ pub(super) fn refine<V: Vector>(
             return Ok(contact);
         }
         steps.judge(bracket.gap_to_hull(slope), turned.is_some(), bracket.noise);
-        recent.push(point + n * bracket.radius, n, witness);
-        if let Some(contact) = touch(bracket, recent.simplex()) {
-            return Ok(contact);
-        }
+        recent.push(point + n * bracket.radius, n);
         if simplex.points().contains(&point) {
             if turned.is_some() {
                 continue;
             }
-            // Nothing is before the facet. One that is seen as a sliver is entered at a spot that is mostly rounding,
-            // while the ray runs through an edge or a corner of it; and what points and planes are wrong by may be all
-            // that is left.
-            let contact = if bracket.radius == Scalar::ZERO { touch(bracket, simplex) } else { None };
-            let all_there_is = || bracket.close_to_hull(slope, wanted + bracket.error, || simplex.weighted_witness());
-            return contact.or_else(all_there_is).ok_or(Stop::InDoubt);
+            // Nothing is before the facet: what points and planes are wrong by may be all that is left.
+            let all_there_is = wanted + bracket.error;
+            return bracket.close_to_hull(slope, all_there_is, || simplex.weighted_witness()).ok_or(Stop::InDoubt);
         }
         let before = *simplex;
         simplex.push(point, n, witness);
@@ -158,28 +151,4 @@ impl<S: Scalar> CurvatureSteps<S> {
         self.model_error = if self.failures == 0 { noise } else { self.model_error * S::from_f64(16.0) };
         self.last_gap = gap;
     }
-}
-
-/// The contact where the ray runs through one of some points of the body, or through a segment or triangle of them, if
-/// that also is where it crosses the last plane.
-fn touch<V: Vector>(bracket: &mut Bracket<'_, V>, points: &Simplex<V>) -> Option<RayContact<V>> {
-    let line = bracket.line();
-    let mut seen = [V::ZERO; MAX_POINTS];
-    for (s, &point) in seen.iter_mut().zip(points.points()) {
-        *s = line.across(point - line.foot);
-    }
-    let seen = &seen[..points.points().len()];
-    // Points first and triangles last, since the coordinates in a sliver are nothing but rounding.
-    for corners in 1..=V::DIM {
-        for face in faces(seen.len(), corners).filter(|face| face.len() == corners) {
-            let Some(nearest) = closest_in_face(seen, face, V::DIM - 1) else { continue };
-            let mut touching = *points;
-            touching.retain(face, nearest.weights);
-            // Measured again, for the same reason.
-            if let Some(contact) = bracket.close_at_point(touching.weighted_point(), touching.weighted_witness()) {
-                return Some(contact);
-            }
-        }
-    }
-    None
 }

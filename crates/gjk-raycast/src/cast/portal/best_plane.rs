@@ -3,9 +3,9 @@
 use convex_support::{Scalar, Vector};
 
 use super::pieces::{MAX_PIECES, QuadraticModel, RayPiece};
-use super::ray_frame::{Alpha, RayPlane, weights_of_zero};
+use crate::cast::ray_frame::Alpha;
 use crate::curvature::{between, is_stiff_across, share_of_second};
-use crate::symmetric::{Across, cross, dot};
+use crate::symmetric::{Across, cross, dot, way};
 
 /// Where the least of the models is greatest, and how great it is there.
 ///
@@ -17,8 +17,8 @@ use crate::symmetric::{Across, cross, dot};
 /// ```
 ///
 /// One piece gives `δ = −H⁻¹P`, or where `H` is singular, [`along_edge`]. Of two, with `e = Pⱼ − Pᵢ`, the second
-/// condition to first order is `e·δ = τⱼ − τᵢ`, and the first one [across](between) `e` gives the rest. Three are alike
-/// at one `δ`.
+/// condition to first order is `e·δ = τⱼ − τᵢ`, and the first one [across](between) `e` gives the rest. Of three, the
+/// plane where all are alike is the portal's own.
 ///
 /// The newest piece is the lowest where it was looked at, and mostly one of those. So those without it are tried only
 /// where none with it will do.
@@ -35,11 +35,7 @@ pub(super) fn best_plane<V: Vector>(
             break;
         }
         models.offer_one(i);
-        for j in 0..i {
-            if models.offer_two(i, j) {
-                (0..j).for_each(|k| models.offer_three(i, j, k));
-            }
-        }
+        (0..i).for_each(|j| models.offer_two(i, j));
     }
     models.best.map(|((x, y), value)| (Alpha { a: alpha.a + x, b: alpha.b + y }, value))
 }
@@ -111,35 +107,19 @@ impl<S: Scalar> Models<S> {
         }
     }
 
-    /// Whether the two points are apart by more than rounding.
     #[inline(always)]
-    fn offer_two(&mut self, i: usize, j: usize) -> bool {
+    fn offer_two(&mut self, i: usize, j: usize) {
         let (t, s) = (&self.turned[i], &self.turned[j]);
-        let e = (s.p.0 - t.p.0, s.p.1 - t.p.1);
+        let e = way(t.p, s.p);
         let squared = dot(e, e);
-        if !(squared > self.noise * self.noise) {
-            return false;
-        }
         let hessian = t.hessian.blend(s.hessian, share_of_second(t.p, e));
-        if is_stiff_across(hessian, e) {
+        // Points no farther apart than rounding are one.
+        if squared > self.noise * self.noise && is_stiff_across(hessian, e) {
             let change = between(hessian, t.p, e, self.tau[j] - self.tau[i]);
             let share = -dot(e, t.p) - dot(e, hessian.times(change));
             if share >= S::ZERO && share <= squared {
                 self.offer(change, 1 << i | 1 << j);
             }
-        }
-        true
-    }
-
-    #[inline(always)]
-    fn offer_three(&mut self, i: usize, j: usize, k: usize) {
-        let (t, s, r) = (self.turned[i].p, self.turned[j].p, self.turned[k].p);
-        let (e, f) = ((s.0 - t.0, s.1 - t.1), (r.0 - t.0, r.1 - t.1));
-        let plane = RayPlane::rising((e, self.tau[j] - self.tau[i]), (f, self.tau[k] - self.tau[i]));
-        let turn = S::ONE.copysign(plane.c);
-        // NaN fails this too.
-        if weights_of_zero([t, s, r]).iter().all(|&w| w * turn >= S::ZERO) {
-            self.offer((plane.a / plane.c, plane.b / plane.c), 1 << i | 1 << j | 1 << k);
         }
     }
 }

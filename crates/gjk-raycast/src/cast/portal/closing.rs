@@ -4,9 +4,9 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::ray_frame::{Alpha, RayFrame, RayPoint};
 use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
+use crate::cast::ray_frame::{Alpha, RayFrame, RayPoint};
 use crate::cast::{RayContact, Stop};
 
 /// The plane that is crossed last, of those known.
@@ -79,17 +79,6 @@ impl<V: Vector> BestPlane<V> {
         Ok(true)
     }
 
-    /// Closes the bracket between this plane and a point of the body.
-    #[inline(always)]
-    pub(super) fn close_at(
-        &self,
-        bracket: &mut Bracket<'_, V>,
-        frame: &RayFrame<V>,
-        below: &OnLine<V>,
-    ) -> Result<RayContact<V>, Stop<V>> {
-        self.close(bracket, frame, below.corners(), below.weights(), below.high)
-    }
-
     /// Closes the bracket between this plane and the weighted sum of the corners, which is on the line at `high`.
     #[inline(always)]
     pub(super) fn close(
@@ -111,7 +100,7 @@ impl<V: Vector> BestPlane<V> {
         }
         let n = frame.normal(self.alpha.plane()).unit().ok_or(Stop::InDoubt)?;
         bracket.advance(n, self.point)?;
-        bracket.close(point, witness, high)
+        bracket.close(bracket.radius, point, witness, high)
     }
 }
 
@@ -121,22 +110,13 @@ fn swept<S: Scalar>(radius: S, alpha: Alpha<S>) -> S {
     if radius > S::ZERO { radius * alpha.length() } else { S::ZERO }
 }
 
-/// Up to three points of the body, and a combination of them that is on the ray.
+/// Three points of the body, and a combination of them that is on the ray: of a portal in anticlockwise order; or where
+/// none is known, any points, and `high` infinite.
 #[derive(Clone, Copy)]
 pub(super) struct OnLine<V: Vector> {
     pub(super) corners: [RayPoint<V>; 3],
+    /// The weights of the combination, with sum 1.
     pub(super) weights: [V::Scalar; 3],
-    pub(super) len: usize,
     /// Where on the ray it is.
     pub(super) high: V::Scalar,
-}
-
-impl<V: Vector> OnLine<V> {
-    pub(super) fn corners(&self) -> &[RayPoint<V>] {
-        &self.corners[..self.len]
-    }
-
-    pub(super) fn weights(&self) -> &[V::Scalar] {
-        &self.weights[..self.len]
-    }
 }

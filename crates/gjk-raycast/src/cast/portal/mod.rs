@@ -1,13 +1,12 @@
 //! The ray cast as it is seen along the ray, where it is the search for a plane by two unknowns, and for a point of the
 //! line in a triangle of support points.
 //!
-//! What is decided here, by signs and by planes in the coordinates of the [frame](ray_frame), is where to look next.
-//! Where the [bracket](super::bracket) finds that in doubt, so is the answer, and Algorithm 3 takes over.
+//! What is decided here, by signs and by planes in the coordinates of the [frame](super::ray_frame), is where to look
+//! next. Where the [bracket](super::bracket) finds that in doubt, so is the answer, and Algorithm 3 takes over.
 
 mod best_plane;
 mod closing;
 mod pieces;
-mod ray_frame;
 mod rounded;
 mod smooth;
 mod sqp;
@@ -18,7 +17,7 @@ use num_traits::Float as _;
 
 use super::bracket::Bracket;
 use super::{RayContact, Stop};
-use ray_frame::RayFrame;
+use crate::cast::ray_frame::RayFrame;
 use rounded::rounded;
 use smooth::smooth;
 use triangle::triangle;
@@ -32,7 +31,7 @@ const OF_FACE: f64 = 0.03;
 /// from aside is known to the third order of that angle; where a polytope is looked at along, it is the same.
 fn tilt<V: Vector>(bracket: &Bracket<'_, V>, error: V::Scalar) -> V::Scalar {
     let of_face = V::Scalar::from_f64(OF_FACE);
-    if bracket.body.is_curved() { (error + error).max(V::Scalar::EPSILON.sqrt()).min(of_face) } else { of_face }
+    if bracket.is_curved { (error + error).max(V::Scalar::EPSILON.sqrt()).min(of_face) } else { of_face }
 }
 
 /// Closes the bracket, or finds a plane that the whole ray is before.
@@ -42,13 +41,13 @@ pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayConta
     // far the next one is tilted.
     let told = bracket.options.warm_start.and_then(|warm| Some((warm.axis.unit()?, tilt(bracket, warm.error()))));
     let (first, tilt) = told.unwrap_or_else(|| (bracket.x(), Scalar::ONE));
-    let frame = RayFrame::new(bracket.line(), Scalar::ZERO);
-    let curved = frame.is_curved(bracket.body, first);
+    let core = RayFrame::new(bracket.line());
+    let curved = core.is_curved(bracket, first);
     if !curved && bracket.radius > Scalar::ZERO {
-        return rounded(bracket, &frame, first, tilt);
+        return rounded(bracket, &core, first, tilt);
     }
+    let mut frame = RayFrame { radius: bracket.radius, ..core };
     let mut seen = None;
-    let mut frame = if curved { RayFrame::new(bracket.line(), bracket.radius) } else { frame };
     if curved {
         match smooth(bracket, &frame, first, tilt < Scalar::ONE, &mut seen) {
             Err(Stop::InDoubt) => {}
@@ -58,7 +57,7 @@ pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayConta
     // A second time where the line was found to touch the body, and is moved inward.
     for _ in 0..2 {
         match triangle(bracket, &frame, first, seen.take(), tilt) {
-            Err(Stop::Touches(inward)) => frame = frame.moved(inward),
+            Err(Stop::Touches(inward)) => frame.line.foot += inward,
             found => return found,
         }
     }

@@ -1,12 +1,14 @@
 //! Smooth pieces of a body's surface as they are seen along a ray, each a quadratic model of `τ`.
 
+use core::iter;
+
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::closing::OnLine;
-use super::ray_frame::{Alpha, RayPoint, weights_of_zero};
-use crate::curvature::turned;
-use crate::symmetric::{Across, Symmetric, dot};
+use crate::cast::ray_frame::{Alpha, RayPoint, weights_of_zero};
+use crate::curvature::{share_of_second, turned};
+use crate::symmetric::{Across, Symmetric, dot, way};
 
 /// A support point, the plane it was found on, and how it moves from there.
 #[derive(Clone, Copy, Default)]
@@ -47,7 +49,7 @@ impl<V: Vector> RayPiece<V> {
         let number = V::Scalar::from_f64;
         let (through, p) = (alpha.tau(&self.p), self.p.across());
         let alone = QuadraticModel { tau: through, p, hessian: Symmetric::ZERO };
-        let change = self.alpha.change_to(alpha);
+        let change = way(self.alpha.across(), alpha.across());
         let angle = dot(change, change) / alpha.length_squared();
         if angle > number(FAR * FAR) || self.hessian.is_zero() {
             return alone;
@@ -68,7 +70,8 @@ impl<V: Vector> RayPiece<V> {
     /// to third order, and no farther than by the body's size.
     fn is_same_as(&self, other: &Self, noise: V::Scalar) -> bool {
         let number = V::Scalar::from_f64;
-        let expected = self.hessian.blend(other.hessian, number(0.5)).times(self.alpha.change_to(other.alpha));
+        let expected =
+            self.hessian.blend(other.hessian, number(0.5)).times(way(self.alpha.across(), other.alpha.across()));
         let (moved, _) = self.p.edge_to(&other.p);
         let error = (moved.0 - expected.0, moved.1 - expected.1);
         let squared = dot(moved, moved);
@@ -151,42 +154,20 @@ impl<V: Vector> RayPieces<V> {
         self.kept[self.len - 1] = piece;
     }
 
-    /// The point, segment or triangle of pieces, the newest among them, that the line passes within `noise`.
+    /// The point or segment of pieces, the newest among them, that the line passes within `noise`.
     pub(super) fn passed(&self, noise: V::Scalar) -> Option<OnLine<V>> {
-        let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let newest = self.len.checked_sub(1)?;
-        let p = self.kept[newest].p.across();
-        if dot(p, p) <= noise * noise {
-            return Some(self.on_line([newest; 3], [one, zero, zero], 1));
-        }
-        for i in 0..newest {
-            let (e, _) = self.kept[newest].p.edge_to(&self.kept[i].p);
-            let share = (-dot(p, e) / dot(e, e)).max(zero).min(one);
-            let nearest = (p.0 + e.0 * share, p.1 + e.1 * share);
-            if dot(nearest, nearest) <= noise * noise {
-                return Some(self.on_line([newest, i, i], [one - share, share, zero], 2));
-            }
-        }
-        for i in 0..newest {
-            for j in 0..i {
-                let across = |i: usize| self.kept[i].p.across();
-                let weights = weights_of_zero([across(newest), across(i), across(j)]);
-                let sum = weights[0] + weights[1] + weights[2];
-                // NaN fails this too.
-                if weights.iter().all(|&w| w * sum >= zero) && sum.recip().is_finite() {
-                    return Some(self.on_line([newest, i, j], weights.map(|w| w * sum.recip()), 3));
-                }
-            }
-        }
-        None
-    }
-
-    fn on_line(&self, corners: [usize; 3], weights: [V::Scalar; 3], len: usize) -> OnLine<V> {
-        let corners = corners.map(|i| self.kept[i].p);
-        let mut high = V::Scalar::ZERO;
-        for (p, &weight) in corners[..len].iter().zip(&weights) {
-            high += p.t * weight;
-        }
-        OnLine { corners, weights, len, high }
+        let p = &self.kept[newest].p;
+        // The newest alone is a segment without length, whose second point has no share.
+        iter::once(newest).chain(0..newest).find_map(|i| {
+            let q = &self.kept[i].p;
+            let e = way(p.across(), q.across());
+            let share = share_of_second(p.across(), e);
+            let rest = V::Scalar::ONE - share;
+            let nearest = (p.u + e.0 * share, p.v + e.1 * share);
+            let weights = [rest, share, V::Scalar::ZERO];
+            let found = OnLine { corners: [*p, *q, *q], weights, high: p.t * rest + q.t * share };
+            (dot(nearest, nearest) <= noise * noise).then_some(found)
+        })
     }
 }

@@ -15,9 +15,9 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::closing::BestPlane;
-use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use super::triangle::MAX_EXCHANGES;
 use crate::cast::bracket::Bracket;
+use crate::cast::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use crate::cast::{RayContact, Stop};
 use crate::symmetric::{Across, cross, dot};
 
@@ -76,7 +76,7 @@ pub(super) fn rounded<V: Vector>(
             best.set(high, alpha, &p);
         }
         if !best.alpha.is_within(high - best.tau, tolerance) {
-            if frame.is_curved(bracket.body, frame.normal(alpha.plane())) {
+            if frame.is_curved(bracket, frame.normal(alpha.plane())) {
                 return Err(Stop::InDoubt);
             }
             let next = frame.support_of(bracket, alpha.plane())?;

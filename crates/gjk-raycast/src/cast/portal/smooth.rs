@@ -10,8 +10,8 @@ use num_traits::Float as _;
 
 use super::closing::BestPlane;
 use super::pieces::{RayPiece, RayPieces};
-use super::ray_frame::{Alpha, RayFrame, RayPoint};
 use crate::cast::bracket::Bracket;
+use crate::cast::ray_frame::{Alpha, RayFrame, RayPoint};
 use crate::cast::{RayContact, Stop};
 use crate::symmetric::{Symmetric, dot};
 
@@ -59,7 +59,7 @@ pub(super) fn smooth<V: Vector>(
                     return Err(Stop::InDoubt);
                 }
                 if below.high - best.tau <= tolerance * best.alpha.length() {
-                    return best.close_at(bracket, frame, &below);
+                    return best.close(bracket, frame, &below.corners, &below.weights, below.high);
                 }
             }
             // Near the end, Newton's step H·δ = −(u, v) is the same, and does not cancel.
@@ -124,7 +124,7 @@ fn in_ball<V: Vector>(
     let change = frame.vector((-x, -y));
     let witness = frame.turned(bracket.body, n, change, p.witness);
     bracket.advance(unit, p.point).ok()?;
-    let found = bracket.close_in(radius, p.point - unit * (radius - bracket.radius), witness, high).ok()?;
+    let found = bracket.close(radius, p.point - unit * (radius - bracket.radius), witness, high).ok()?;
     Some(RayContact { normal: (n + change).unit(), ..found })
 }
 
@@ -159,7 +159,7 @@ fn enter_ellipsoid<V: Vector>(
     hessian: Symmetric<V::Scalar>,
 ) -> Result<Next<V>, Stop<V>> {
     let zero = V::Scalar::ZERO;
-    let foot = frame.split(frame.foot()).0;
+    let foot = frame.split(frame.line.foot).0;
     let point = ((p.u + foot.0, p.v + foot.1), -p.t);
     let (across, facing) = frame.split(n);
     let h = dot(across, point.0) + facing * point.1;

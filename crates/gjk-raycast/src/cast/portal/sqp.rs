@@ -17,10 +17,10 @@ use num_traits::Float as _;
 use super::best_plane::best_plane;
 use super::closing::{BestPlane, OnLine};
 use super::pieces::{RayPiece, RayPieces};
-use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint, weights_of_zero};
 use crate::cast::bracket::Bracket;
+use crate::cast::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint, weights_of_zero};
 use crate::cast::{RayContact, Stop};
-use crate::symmetric::{Across, Symmetric};
+use crate::symmetric::{Across, Symmetric, way};
 
 /// Support points of the search.
 const MAX_STEPS: usize = 40;
@@ -37,7 +37,7 @@ const FAR: f64 = 8.0;
 pub(super) fn sqp<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
-    mut portal: Portal<V>,
+    mut portal: OnLine<V>,
     mut best: BestPlane<V>,
     tilt: V::Scalar,
 ) -> Result<RayContact<V>, Stop<V>> {
@@ -54,20 +54,15 @@ pub(super) fn sqp<V: Vector>(
         let far = tilt * V::Scalar::from_f64(FAR) * newest.alpha.length();
         let is_near = |(x, y): Across<_>| x * x + y * y <= far * far;
         match best_plane(pieces.all(), newest.alpha, bracket.noise, Scalar::ONE) {
-            Some((to, _)) if is_enclosed || is_near(newest.alpha.change_to(to)) => alpha = to,
+            Some((to, _)) if is_enclosed || is_near(way(newest.alpha.across(), to.across())) => alpha = to,
             _ if is_enclosed => {}
             _ => return Err(Stop::InDoubt),
         }
     }
     let start = bracket.low();
     let mut steps = Steps { gap: V::Scalar::infinity(), failures: 0, error_weight: V::Scalar::ONE };
-    let mut coarse = None;
     for _ in 0..MAX_STEPS {
-        let p = match frame.support_of(bracket, alpha.plane()) {
-            Ok(p) => p,
-            Err(_) if coarse.is_some() => break,
-            Err(stop) => return Err(stop),
-        };
+        let p = frame.support_of(bracket, alpha.plane())?;
         best.improve(bracket, frame, alpha, &p, Scalar::ZERO)?;
         let same = pieces.push(piece(bracket, frame, p, alpha), bracket.noise);
         steps.weigh_error(same);
@@ -79,17 +74,20 @@ pub(super) fn sqp<V: Vector>(
         } else if portal.high < start {
             break;
         }
-        match close(bracket, frame, &best, &pieces, &portal, start, &mut coarse) {
-            Err(Stop::InDoubt) => {}
-            found => return found,
+        // A segment first, since the weights in a flat triangle may be nothing but rounding.
+        let passed = pieces.passed(bracket.noise).filter(|below| below.high >= start);
+        for below in passed.into_iter().chain([portal]) {
+            if best.alpha.is_within(below.high - best.tau, bracket.tolerance()) {
+                match best.close(bracket, frame, &below.corners, &below.weights, below.high) {
+                    Err(Stop::InDoubt) => {}
+                    found => return found,
+                }
+            }
         }
         let Some(to) = steps.next(bracket, &pieces, &portal, &best, alpha) else { break };
         alpha = to;
     }
-    match coarse {
-        Some(below) => best.close_at(bracket, frame, &below),
-        None => Err(Stop::InDoubt),
-    }
+    Err(Stop::InDoubt)
 }
 
 /// A point's piece at the plane it was found on. A point found on a plane along the ray counts for itself alone.
@@ -104,46 +102,6 @@ fn piece<V: Vector>(
         Some(alpha) => RayPiece { p, alpha, hessian: frame.hessian(bracket.body, frame.normal(alpha.plane())) },
         None => RayPiece { p, alpha, hessian: Symmetric::ZERO },
     }
-}
-
-/// Closes the bracket by pieces that the line passes or a portal that it runs through.
-///
-/// At a small slope, what closes the bracket to rounding of the planes is long along the ray, and there one more plane
-/// mostly shortens it by all of the rest: `λ` is where the last plane is crossed. Meanwhile `coarse` is what closes it.
-#[inline(always)]
-fn close<V: Vector>(
-    bracket: &mut Bracket<'_, V>,
-    frame: &RayFrame<V>,
-    best: &BestPlane<V>,
-    pieces: &RayPieces<V>,
-    portal: &Portal<V>,
-    start: V::Scalar,
-    coarse: &mut Option<OnLine<V>>,
-) -> Result<RayContact<V>, Stop<V>> {
-    let within = bracket.tolerance() * best.alpha.length();
-    let fine = (bracket.noise + bracket.noise).max(bracket.tolerance());
-    // A segment first, since the weights in a flat triangle may be nothing but rounding.
-    let passed = pieces.passed(bracket.noise).filter(|below| below.high >= start);
-    let enclosing = (portal.high - best.tau <= within).then(|| OnLine::from(*portal));
-    let mut wide = None;
-    for below in [&passed, &enclosing, &*coarse].into_iter().flatten() {
-        let gap = below.high - best.tau;
-        if !(gap <= within) {
-            continue;
-        }
-        if coarse.is_none() && gap > fine {
-            wide = wide.or(Some(*below));
-            continue;
-        }
-        match best.close_at(bracket, frame, below) {
-            Err(Stop::InDoubt) => {}
-            found => return found,
-        }
-    }
-    if coarse.is_none() {
-        *coarse = wide;
-    }
-    Err(Stop::InDoubt)
 }
 
 /// How well the steps go.
@@ -170,7 +128,7 @@ impl<S: Scalar> Steps<S> {
         &mut self,
         bracket: &Bracket<'_, V>,
         pieces: &RayPieces<V>,
-        portal: &Portal<V>,
+        portal: &OnLine<V>,
         best: &BestPlane<V>,
         alpha: Alpha<S>,
     ) -> Option<Alpha<S>> {
@@ -194,18 +152,7 @@ impl<S: Scalar> Steps<S> {
     }
 }
 
-/// Three points of the body, in anticlockwise order, whose triangle the line runs through; or where none is known, any,
-/// and `high` infinite.
-#[derive(Clone, Copy)]
-pub(super) struct Portal<V: Vector> {
-    pub(super) corners: [RayPoint<V>; 3],
-    /// The weights of the point where the line runs through, with sum 1.
-    pub(super) weights: [V::Scalar; 3],
-    /// Where the line runs through.
-    pub(super) high: V::Scalar,
-}
-
-impl<V: Vector> Portal<V> {
+impl<V: Vector> OnLine<V> {
     /// No portal, but points of the body.
     pub(super) fn unknown(corners: [RayPoint<V>; 3]) -> Self {
         Self { corners, weights: [V::Scalar::ZERO; 3], high: V::Scalar::infinity() }
@@ -238,11 +185,5 @@ impl<V: Vector> Portal<V> {
                 return;
             }
         }
-    }
-}
-
-impl<V: Vector> From<Portal<V>> for OnLine<V> {
-    fn from(portal: Portal<V>) -> Self {
-        Self { corners: portal.corners, weights: portal.weights, len: 3, high: portal.high }
     }
 }

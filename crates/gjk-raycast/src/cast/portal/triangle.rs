@@ -13,12 +13,12 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::OF_FACE;
-use super::closing::BestPlane;
+use super::closing::{BestPlane, OnLine};
 use super::pieces::is_surrounded;
-use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
-use super::sqp::{Portal, sqp};
+use super::sqp::sqp;
 use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
+use crate::cast::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use crate::cast::{RayContact, Stop};
 use crate::symmetric::dot;
 
@@ -61,8 +61,8 @@ pub(super) fn triangle<V: Vector>(
     let mut portal = if tilt < Scalar::ONE { mixed(frame, &p, &q) } else { None };
     if portal.is_none() {
         // Pieces known from so near tell where to look next before the line is enclosed.
-        if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.body.is_curved() {
-            match sqp(bracket, frame, Portal::unknown([p, p, q]), planes.best, tilt) {
+        if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.is_curved {
+            match sqp(bracket, frame, OnLine::unknown([p, p, q]), planes.best, tilt) {
                 Err(Stop::InDoubt) => {}
                 found => return found,
             }
@@ -73,8 +73,8 @@ pub(super) fn triangle<V: Vector>(
         Some(found) => planes.shrink(bracket, found),
         // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a
         // smooth piece may be found that it runs through.
-        None if planes.best.is_known() && frame.is_curved(bracket.body, frame.normal(planes.best.alpha.plane())) => {
-            sqp(bracket, frame, Portal::unknown([p, q, q]), planes.best, tilt)
+        None if planes.best.is_known() && frame.is_curved(bracket, frame.normal(planes.best.alpha.plane())) => {
+            sqp(bracket, frame, OnLine::unknown([p, q, q]), planes.best, tilt)
         }
         None => Err(Stop::InDoubt),
     }
@@ -150,7 +150,7 @@ impl<V: Vector> Planes<'_, V> {
         q: &mut RayPoint<V>,
     ) -> Result<Option<Triangle<V>>, Stop<V>> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-        let most = if bracket.body.is_curved() { MAX_OUTSIDE / 2 } else { MAX_OUTSIDE };
+        let most = if bracket.is_curved { MAX_OUTSIDE / 2 } else { MAX_OUTSIDE };
         for _ in 0..most {
             let area = p.cross(q);
             let turn = one.copysign(area);
@@ -204,7 +204,7 @@ impl<V: Vector> Planes<'_, V> {
             let closed = |best: &BestPlane<V>, alpha: Alpha<V::Scalar>| alpha.is_within(high - best.tau, tolerance);
             let weights = portal.weights.map(|w| w * inverse);
             if !closed(&self.best, self.best.alpha) {
-                if bracket.body.is_curved() && self.frame.is_curved(bracket.body, self.frame.normal(plane)) {
+                if self.frame.is_curved(bracket, self.frame.normal(plane)) {
                     return sqp(bracket, self.frame, portal.anticlockwise(weights, high), self.best, self.tilt);
                 }
                 let before = self.best.tau;
@@ -260,11 +260,11 @@ impl<V: Vector> Triangle<V> {
         }
     }
 
-    fn anticlockwise(&self, [wp, wq, ws]: [V::Scalar; 3], high: V::Scalar) -> Portal<V> {
+    fn anticlockwise(&self, [wp, wq, ws]: [V::Scalar; 3], high: V::Scalar) -> OnLine<V> {
         let [p, q, s] = self.corners;
         let (corners, weights) =
             if self.turn > Scalar::ZERO { ([p, q, s], [wp, wq, ws]) } else { ([q, p, s], [wq, wp, ws]) };
-        Portal { corners, weights, high }
+        OnLine { corners, weights, high }
     }
 }
 
@@ -272,13 +272,15 @@ impl<V: Vector> Triangle<V> {
 /// zero: where two edges cross, the line runs through the parallelogram of their ends.
 fn mixed<V: Vector>(frame: &RayFrame<V>, p: &RayPoint<V>, q: &RayPoint<V>) -> Option<Triangle<V>> {
     let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-    if frame.radius() > zero {
+    if frame.radius > zero {
         return None;
     }
     let area = p.cross(q);
     let turn = one.copysign(area);
     [[p, q], [q, p]].into_iter().find_map(|[a, b]| {
-        let s = frame.seen(PointPair { a: a.witness.a, b: b.witness.b });
+        let witness = PointPair { a: a.witness.a, b: b.witness.b };
+        let point = witness.a - witness.b;
+        let s = frame.see(point, point, witness);
         let weights = [area.abs(), q.cross(&s) * turn, s.cross(p) * turn];
         (weights[1] > zero && weights[2] > zero).then_some(Triangle { corners: [s, *p, *q], weights, turn })
     })
@@ -296,12 +298,12 @@ fn support_across<V: Vector>(
     let across = frame.vector(toward).unit().ok_or(Stop::InDoubt)?;
     let p: RayPoint<_> = frame.support(bracket, across)?;
     bracket.advance(across, p.point)?;
-    let beyond = (p.point - frame.foot()).dot(across) + frame.radius();
+    let beyond = (p.point - frame.line.foot).dot(across) + frame.radius;
     if beyond > Scalar::ZERO {
         return Ok(p);
     }
     let inward = bracket.noise * V::Scalar::from_f64(0.5);
-    if bracket.radius == Scalar::ZERO && frame.foot() == bracket.line().foot && beyond > -inward {
+    if bracket.radius == Scalar::ZERO && frame.line.foot == bracket.line().foot && beyond > -inward {
         return Err(Stop::Touches(-across * inward));
     }
     Err(Stop::InDoubt)

@@ -11,12 +11,12 @@
 
 use convex_support::{Scalar, Vector};
 
+use super::Stop;
+use super::bracket::Bracket;
+use super::line::Line;
 use crate::body::{CastBody, PointPair};
-use crate::cast::Stop;
-use crate::cast::bracket::Bracket;
-use crate::cast::line::Line;
 use crate::curvature;
-use crate::symmetric::{Across, Symmetric, axes_across, cross, dot};
+use crate::symmetric::{Across, Symmetric, axes_across, cross, dot, way};
 
 /// A support point as it is seen along the ray.
 #[derive(Clone, Copy, Default)]
@@ -43,7 +43,7 @@ impl<V: Vector> RayPoint<V> {
 
     /// The vector from `self` to `to`, `(u, v)` and `t`.
     pub(super) fn edge_to(&self, to: &Self) -> (Across<V::Scalar>, V::Scalar) {
-        ((to.u - self.u, to.v - self.v), to.t - self.t)
+        (way(self.across(), to.across()), to.t - self.t)
     }
 }
 
@@ -65,10 +65,6 @@ impl<S: Scalar> Alpha<S> {
     /// The `τ` of the plane through a point.
     pub(super) fn tau<V: Vector<Scalar = S>>(self, p: &RayPoint<V>) -> S {
         p.t - self.a * p.u - self.b * p.v
-    }
-
-    pub(super) fn change_to(self, to: Self) -> Across<S> {
-        (to.a - self.a, to.b - self.b)
     }
 
     pub(super) fn across(self) -> Across<S> {
@@ -110,15 +106,12 @@ pub(super) struct RayPlane<S> {
 }
 
 impl<S: Scalar> RayPlane<S> {
-    /// The plane that rises by `g` along `e` and by `h` along `f`: `e·α = g`, `f·α = h`; `c = e×f` is twice the area of
-    /// the triangle.
-    pub(super) fn rising((e, g): (Across<S>, S), (f, h): (Across<S>, S)) -> Self {
-        Self { a: g * f.1 - h * e.1, b: e.0 * h - f.0 * g, c: cross(e, f) }
-    }
-
-    /// The plane through three points.
+    /// The plane through three points: that rises by `g` along `e` and by `h` along `f`, the edges from the first one,
+    /// so that `e·α = g` and `f·α = h`; `c = e×f` is twice the area of the triangle.
+    #[inline(always)]
     pub(super) fn through<V: Vector<Scalar = S>>([p, q, s]: [&RayPoint<V>; 3]) -> Self {
-        Self::rising(p.edge_to(q), p.edge_to(s))
+        let ((e, g), (f, h)) = (p.edge_to(q), p.edge_to(s));
+        Self { a: g * f.1 - h * e.1, b: e.0 * h - f.0 * g, c: cross(e, f) }
     }
 
     pub(super) fn alpha(self) -> Alpha<S> {
@@ -127,55 +120,39 @@ impl<S: Scalar> RayPlane<S> {
     }
 }
 
-/// The axes of the ray, where they cross, and the radius that is added to what is seen.
+/// The axes of the ray, and the radius that is added to what is seen.
 #[derive(Clone, Copy)]
 pub(super) struct RayFrame<V: Vector> {
-    e1: V,
-    e2: V,
-    d: V,
-    /// The line's foot; or where the line only touches the body, a point nearer the body by less than rounding.
-    foot: V,
+    pub(super) axes: [V; 2],
+    /// The line; or where that only touches the body, one that is nearer to it by less than rounding.
+    pub(super) line: Line<V>,
     /// The part of the body's radius that support points are moved by: none where the search sweeps the core by itself.
-    radius: V::Scalar,
+    pub(super) radius: V::Scalar,
 }
 
 impl<V: Vector> RayFrame<V> {
+    /// That of the core alone.
     #[inline(always)]
-    pub(super) fn new(line: Line<V>, radius: V::Scalar) -> Self {
-        let [e1, e2] = axes_across(line.direction);
-        Self { e1, e2, d: line.direction, foot: line.foot, radius }
-    }
-
-    /// The same for the line moved by a vector across it.
-    #[inline(always)]
-    pub(super) fn moved(self, by: V) -> Self {
-        Self { foot: self.foot + by, ..self }
-    }
-
-    pub(super) fn foot(&self) -> V {
-        self.foot
-    }
-
-    pub(super) fn radius(&self) -> V::Scalar {
-        self.radius
+    pub(super) fn new(line: Line<V>) -> Self {
+        Self { axes: axes_across(line.direction), line, radius: Scalar::ZERO }
     }
 
     /// The part of a vector across the ray, and the one against it.
     #[inline(always)]
     pub(super) fn split(&self, v: V) -> (Across<V::Scalar>, V::Scalar) {
-        ((v.dot(self.e1), v.dot(self.e2)), -v.dot(self.d))
+        ((v.dot(self.axes[0]), v.dot(self.axes[1])), -v.dot(self.line.direction))
     }
 
     /// The vector across the ray.
     #[inline(always)]
     pub(super) fn vector(&self, across: Across<V::Scalar>) -> V {
-        self.e1 * across.0 + self.e2 * across.1
+        self.axes[0] * across.0 + self.axes[1] * across.1
     }
 
     /// A normal of a plane.
     #[inline(always)]
     pub(super) fn normal(&self, plane: RayPlane<V::Scalar>) -> V {
-        self.e1 * plane.a + self.e2 * plane.b - self.d * plane.c
+        self.axes[0] * plane.a + self.axes[1] * plane.b - self.line.direction * plane.c
     }
 
     /// The support point along any vector.
@@ -183,16 +160,14 @@ impl<V: Vector> RayFrame<V> {
     pub(super) fn support(&self, bracket: &mut Bracket<'_, V>, n: V) -> Result<RayPoint<V>, Stop<V>> {
         let (point, witness) = bracket.support(n, n, &[])?;
         let swept = if self.radius > Scalar::ZERO { point + n * (self.radius / n.norm()) } else { point };
-        let aside = swept - self.foot;
-        let (u, v, t) = (aside.dot(self.e1), aside.dot(self.e2), swept.dot(self.d));
-        Ok(RayPoint { u, v, t, point, witness, alpha: None })
+        Ok(self.see(swept, point, witness))
     }
 
-    /// A point of a body that no radius is added to, by what it is made of.
-    pub(super) fn seen(&self, witness: PointPair<V>) -> RayPoint<V> {
-        let point = witness.a - witness.b;
-        let aside = point - self.foot;
-        let (u, v, t) = (aside.dot(self.e1), aside.dot(self.e2), point.dot(self.d));
+    /// A point of the body, of the core's point that it is moved from, and what that is made of.
+    #[inline(always)]
+    pub(super) fn see(&self, swept: V, point: V, witness: PointPair<V>) -> RayPoint<V> {
+        let aside = swept - self.line.foot;
+        let (u, v, t) = (aside.dot(self.axes[0]), aside.dot(self.axes[1]), swept.dot(self.line.direction));
         RayPoint { u, v, t, point, witness, alpha: None }
     }
 
@@ -207,12 +182,11 @@ impl<V: Vector> RayFrame<V> {
         witness: PointPair<V>,
     ) -> PointPair<V> {
         let (across, change) = (self.split(n).0, self.split(change).0);
-        let axes = [self.e1, self.e2];
         let moved = |hessian: Symmetric<V::Scalar>| {
             let shift = hessian.times(change);
-            self.vector(shift) + self.d * dot(across, shift)
+            self.vector(shift) + self.line.direction * dot(across, shift)
         };
-        let (both, a) = (moved(body.hessian(n, axes)), moved(body.hessian_of_first(n, axes)));
+        let (both, a) = (moved(body.hessian(n, self.axes)), moved(body.hessian_of_first(n, self.axes)));
         PointPair { a: witness.a + a, b: witness.b - (both - a) }
     }
 
@@ -225,19 +199,20 @@ impl<V: Vector> RayFrame<V> {
     ) -> Result<RayPoint<V>, Stop<V>> {
         let mut seen = self.support(bracket, self.normal(plane))?;
         // No polytope is asked where it was looked at along.
-        seen.alpha = bracket.body.is_curved().then(|| plane.alpha());
+        seen.alpha = bracket.is_curved.then(|| plane.alpha());
         Ok(seen)
     }
 
     /// Whether the core's support point moves as a plane turns.
-    pub(super) fn is_curved(&self, body: &dyn CastBody<Vector = V>, n: V) -> bool {
-        body.is_curved() && !body.hessian(n, [self.e1, self.e2]).is_zero()
+    #[inline(always)]
+    pub(super) fn is_curved(&self, bracket: &Bracket<'_, V>, n: V) -> bool {
+        bracket.is_curved && !bracket.body.hessian(n, self.axes).is_zero()
     }
 
     /// The derivative of `(u, v)` at `n`: that of the core's support point, and of the radius that it is moved by.
     #[inline(always)]
     pub(super) fn hessian(&self, body: &dyn CastBody<Vector = V>, n: V) -> Symmetric<V::Scalar> {
-        let core = body.hessian(n, [self.e1, self.e2]);
+        let core = body.hessian(n, self.axes);
         if self.radius > Scalar::ZERO {
             curvature::swept(core, self.radius, self.split(n).0, n.length_squared())
         } else {
@@ -249,8 +224,7 @@ impl<V: Vector> RayFrame<V> {
     /// against the ray.
     #[inline(always)]
     pub(super) fn hessian_against(&self, body: &dyn CastBody<Vector = V>, n: V) -> (Across<V::Scalar>, V::Scalar) {
-        let against = -self.d;
-        let (first, second) = (body.hessian(n, [self.e1, against]), body.hessian(n, [self.e2, against]));
+        let [first, second] = self.axes.map(|axis| body.hessian(n, [axis, -self.line.direction]));
         let (mut across, mut along) = ((first.b, second.b), first.d);
         if self.radius > Scalar::ZERO {
             let (per_length, squared) = (self.radius / n.norm(), n.length_squared());
