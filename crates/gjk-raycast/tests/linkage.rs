@@ -9,7 +9,7 @@ use convex_support::{
 };
 use gjk_raycast::{
     Body, HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, Met, MotionCastOptions, Path,
-    PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
+    PathContact, PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
 };
 
 type Bar = Rounded<Segment<DVec2>>;
@@ -57,6 +57,9 @@ fn first_contacts_of_an_arm_are_those_of_its_closed_form() {
         assert!(contact.cast.upper - contact.cast.lower < 1e-12 && (hit.time - truth).abs() < 1e-13, "{contact:?}");
         assert!((hit.point - DVec2::from_angle(angle) * far).length() - 0.1 < 1e-12, "{contact:?}");
         assert_eq!(path, ask(&robot, &ways.map(Vec::from), &scene), "a workspace remembers nothing");
+        let lean = robot.path(&ways, &scene, MotionCastOptions::lean(), &mut workspace).expect("two values each").first;
+        let holds = |lean: PathContact<DVec2>| lean.edge == 1 && lean.cast.lower <= truth && truth <= lean.cast.upper;
+        assert!(lean.is_some_and(holds), "{truth} is not in {lean:?}");
         // Short of the ball by 1e-9 it is free.
         assert!(ask(&robot, &[vec![0.0, 0.0], vec![2.0 * truth - 1e-9, 0.0]], &scene).is_free(), "{far}");
     }
