@@ -4,8 +4,8 @@ use core::ops::ControlFlow;
 
 use convex_support::{Bound, Scalar, ScalarOf, SupportMap};
 
-use super::{Body, PairContact, Scene, Work};
-use crate::{Contact, HalfSpace};
+use super::{Body, PairContact, Scene, SceneDistance, SceneRayCast, Work};
+use crate::{Contact, DistanceOptions, HalfSpace, Ray, RayCastError, RayCastOptions};
 
 /// The bodies of a scene that a question is about: all of them, or those that a closure picks, made by [`Scene::all`]
 /// and [`Scene::among`]. It has the questions that a scene answers.
@@ -75,6 +75,27 @@ impl<S: SupportMap> Scene<S> {
     #[must_use]
     pub fn among<'s>(&'s self, picked: &'s (dyn Fn(usize) -> bool + Sync + 's)) -> Among<'s, S> {
         Among { bodies: Some(picked), ..self.all() }
+    }
+
+    /// [`Among::ray_cast`] of all bodies: with [`nearest`](Self::nearest) the question that is asked most.
+    ///
+    /// # Errors
+    /// As of [`Among::ray_cast`].
+    pub fn ray_cast(
+        &self,
+        ray: Ray<S::Vector>,
+        options: RayCastOptions<S::Vector>,
+    ) -> Result<SceneRayCast<S::Vector>, RayCastError> {
+        self.all().ray_cast(ray, options)
+    }
+
+    /// [`Among::nearest`] of all bodies.
+    pub fn nearest<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        options: DistanceOptions<S::Vector>,
+    ) -> SceneDistance<S::Vector> {
+        self.all().nearest(shape, options)
     }
 }
 

@@ -35,7 +35,8 @@ pub use self::result::{
 /// ([`insert_half_space`](Self::insert_half_space)).
 ///
 /// Scenes answer ray casts, linear and motion casts, distances, contacts, and near or touching pairs: of
-/// [`all`](Self::all) bodies, or [`among`](Self::among) some.
+/// [`all`](Self::all) bodies, or [`among`](Self::among) some. The first ray hit and the nearest body of all can be asked
+/// of the scene itself.
 ///
 /// # Answers
 /// Every answer is the one that results if the single query is asked of each body (or pair) in the order of their
@@ -59,13 +60,13 @@ pub use self::result::{
 ///     Box::new(Posed::translated(Cuboid::new(DVec3::ONE)?, at(10.0, 8.0))?) as Body,
 /// ])?;
 /// let ray = Ray { source: DVec3::ZERO, direction: DVec3::X };
-/// let answer = scene.all().ray_cast(ray, RayCastOptions::default())?;
+/// let answer = scene.ray_cast(ray, RayCastOptions::default())?;
 /// let first = answer.first.ok_or("two are in the way")?;
 /// assert_eq!((first.body, first.hit.lambda), (1, 9.0));
 /// // One is beside the ray, and one behind the hit.
 /// assert_eq!((answer.work.tested, answer.work.culled), (1, 2));
 ///
-/// let nearest = scene.all().nearest(&Ball::new(0.5)?, DistanceOptions::default());
+/// let nearest = scene.nearest(&Ball::new(0.5)?, DistanceOptions::default());
 /// assert_eq!(nearest.nearest.map(|n| (n.body, n.distance.distance)), Some((1, 8.5)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
