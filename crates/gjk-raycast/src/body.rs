@@ -416,7 +416,7 @@ impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
 impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
     /// Known where one of the cores is a point, which is known to its error. A point of the line is in the difference
     /// where `b`, moved there by its origin, meets `a`.
-    // It is asked behind a pointer, of which a linker that sees what is behind it would make a copy at each question.
+    // It is called through a pointer; a linker that sees through it would copy the whole of this to each call.
     #[inline(never)]
     fn certain_crossing(&self, line: LineQuery<T::Vector>) -> Option<CertainCrossing<T::Vector>> {
         let (core_a, core_b, zero) = (&self.core_a, &self.core_b, T::Vector::ZERO);

@@ -72,8 +72,8 @@ pub enum JointBoxOutcome<S> {
 
 impl<S: SupportMap> Linkage<S> {
     /// Whether two links are ever as near one another as the target distance, where each joint value may be anywhere in
-    /// an interval: the joint limits, for a robot's whole life. It gives up after so many looks at parts of the box, of
-    /// which a pair of links of a robot arm takes up to ten thousand.
+    /// an interval: the joint limits, for a robot's whole life. It gives up after `max_boxes` parts of the box; a pair
+    /// of links of a robot arm takes up to ten thousand.
     ///
     /// ```
     /// use convex_support::{Rounded, Segment, glam::DVec2};

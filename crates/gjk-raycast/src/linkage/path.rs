@@ -20,8 +20,8 @@ impl<S: SupportMap> Linkage<S> {
     ///
     /// Along each edge, what comes near is found first. What is near is cast, earliest first, and only until the first
     /// contact so far: [`motion_cast`](crate::motion_cast()) proves it free at all times, or brackets its first
-    /// contact. Bounds account for the rounding of the joints' poses too, so that a free path is a proof
-    /// about the linkage as it is given by its numbers.
+    /// contact. Bounds account for the rounding of the joints' poses too, so that a free path is a proof about
+    /// the linkage as it is given by its numbers.
     ///
     /// The options are those of the casts, but that `max_time` is a time of the path, each edge of which takes 1, and
     /// `max_iterations` counts for each body of a link and each that is near it. A start in contact is a contact,

@@ -35,8 +35,8 @@ pub use self::result::{
 /// ([`insert_half_space`](Self::insert_half_space)).
 ///
 /// Scenes answer ray casts, linear and motion casts, distances, contacts, and near or touching pairs: of
-/// [`all`](Self::all) bodies, or [`among`](Self::among) some. The first ray hit and the nearest body of all can be asked
-/// of the scene itself.
+/// [`all`](Self::all) bodies, or [`among`](Self::among) some. The first ray hit and the nearest body of all can be
+/// asked of the scene itself.
 ///
 /// # Answers
 /// Every answer is the one that results if the single query is asked of each body (or pair) in the order of their

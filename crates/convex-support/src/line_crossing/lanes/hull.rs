@@ -65,8 +65,8 @@ impl<S: Scalar> ClippedLines<S> {
     }
 }
 
-/// [`clip`] of many lines, each at one plane after the other; of one line, planes are side by side. Of planes that are
-/// entered at the same parameter it finds the same one: the first of the first row.
+/// What `clip` does of one line, of many, each at one plane after the other; of one line, planes are side by side. Of
+/// planes that are entered at the same parameter it finds the same one: the first of the first row.
 #[inline(always)]
 fn clip_lines<S: Scalar>(
     planes: &[Planes<S>],
@@ -101,7 +101,7 @@ fn clip_lines<S: Scalar>(
     found
 }
 
-/// [`most_beyond`] of many points, each at one plane after the other.
+/// What `most_beyond` does of one point, of many, each at one plane after the other.
 #[inline(always)]
 fn most_beyond_of_all<S: Scalar>(planes: &[Planes<S>], [x, y, z]: &[Lane<S>; 3]) -> Lane<S> {
     let mut most = [-S::infinity(); LINES];

@@ -1,10 +1,10 @@
 //! Which of a set of points are the vertices of its convex hull, and which facets they span, exactly.
 //!
-//! Quickhull (Barber, Dobkin, Huhdanpaa, *The Quickhull algorithm for convex hulls*, 1996) with
-//! [exact predicates](crate::numerics::orientation). Quickhull with rounded predicates has to merge facets that come out concave, and a mesh from a CAD file,
-//! with its thousands of coplanar and repeated points, is where that goes wrong. With exact ones there is nothing to
-//! repair: a point on a facet's plane does not see the facet, so that coplanar points become coplanar facets, and a
-//! duplicate sees none.
+//! Quickhull (Barber, Dobkin, Huhdanpaa, *The Quickhull algorithm for convex hulls*, 1996) with [exact
+//! predicates](crate::numerics::orientation). Quickhull with rounded predicates has to merge facets that come out
+//! concave, and a mesh from a CAD file, with its thousands of coplanar and repeated points, is where that goes wrong.
+//! With exact ones there is nothing to repair: a point on a facet's plane does not see the facet, so that coplanar
+//! points become coplanar facets, and a duplicate sees none.
 
 use alloc::vec;
 use alloc::vec::Vec;
