@@ -29,7 +29,7 @@ use crate::extra::{Extra, in_static};
 use crate::gjk::{End, Gjk};
 use crate::observer::Observer;
 use crate::{Distance, SignedDistance, SignedDistanceOptions, Status, SubAlgorithm};
-use cores::ClosedForm;
+use cores::{ClosedForm, WayOut};
 pub(crate) use cores::{Cores, Uncertainty, slack};
 pub(crate) use direct::direct;
 use expansion::{Expanded, expand};
@@ -217,12 +217,16 @@ fn reach_closely<V: Vector>(
         }
         let is_apart = end == End::Separated || !state.length.is_finite();
         let expanded = if is_apart { None } else { expand(cores, state, options, observer) };
+        // Where the cores turn out to be apart, GJK's points are nearer than those of a facet.
+        let leads_out = |expanded: &&Expanded<V>| end == End::Overlap || !(expanded.way.h < Scalar::ZERO);
+        let known = match expanded.as_ref().filter(leads_out) {
+            Some(expanded) => Separation::of_expansion(expanded),
+            None => Separation::of_gjk(cores, state, end),
+        };
         match expanded {
-            Some(expanded) => Separation::of_expansion(cores, &expanded, state, end),
-            None => {
-                let known = Separation::of_gjk(cores, state, end);
-                Separation { status: if is_apart { known.status } else { Status::Stalled }, ..known }
-            }
+            Some(Expanded { way, .. }) => known.up_to(cores, state, way),
+            None if is_apart => known,
+            None => Separation { status: Status::Stalled, ..known },
         }
     };
     if wanted.is_depth() { known } else { known.with_common_points(cores, state) }
@@ -283,20 +287,20 @@ impl<V: Vector> Separation<V> {
         Self { u, depth, inner, outer, axis: -u, points, overlap: None, status: Status::Converged, unexpanded: 0 }
     }
 
-    /// By an expansion, after GJK had come to an end.
-    #[inline]
-    fn of_expansion(cores: &Cores<'_, V>, expanded: &Expanded<V>, state: &mut Gjk<V>, end: End) -> Self {
-        let &Expanded { way, ends, inner, status, unexpanded } = expanded;
+    /// By the ends of the way out that an expansion has found.
+    fn of_expansion(
+        &Expanded { way, ends: Ends { u, depth, points }, inner, status, unexpanded }: &Expanded<V>,
+    ) -> Self {
+        Self { u, depth, inner, outer: way.h, axis: -way.u(), points, overlap: None, status, unexpanded }
+    }
+
+    /// The same with the nearer one of the plane that ends a way out and the best one that GJK has come to.
+    fn up_to(self, cores: &Cores<'_, V>, state: &mut Gjk<V>, way: WayOut<V>) -> Self {
         let by_way = way.h + cores.error_along(way.u());
         // NaN is no bound.
         let plane = cores.best_plane(state).filter(|(outer, _)| *outer <= by_way);
         let (outer, axis) = plane.unwrap_or((by_way, -way.u()));
-        // Where the cores turn out to be apart, GJK's points are nearer than those of a facet.
-        if way.h < Scalar::ZERO && end != End::Overlap {
-            return Self { outer, axis, ..Self::of_gjk(cores, state, end) };
-        }
-        let Ends { u, depth, points } = ends;
-        Self { u, depth, inner, outer, axis, points, overlap: None, status, unexpanded }
+        Self { outer, axis, ..self }
     }
 
     /// The same with the points that GJK has come to, where cores overlap and those are nearer to one another than the
