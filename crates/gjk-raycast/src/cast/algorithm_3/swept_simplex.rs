@@ -33,7 +33,9 @@ pub(super) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, n
         let is_facet = face.len() == V::DIM;
         let mut corners = [V::ZERO; MAX_POINTS];
         let corners = face.of(points, &mut corners);
-        let found = match (is_facet, corners.len()) {
+        // Of which there are two kinds, one in each dimension, so that no program has both.
+        let len = if is_facet { V::DIM } else { corners.len() };
+        let found = match (is_facet, len) {
             (true, 2) => enter_facet::<V, 1>(corners, line, radius, noise),
             (true, _) => enter_facet::<V, 2>(corners, line, radius, noise),
             (false, 1) => enter_edge(&AffineHull::<V, 0>::new(corners), line, radius, noise),
