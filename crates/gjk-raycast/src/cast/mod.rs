@@ -30,7 +30,7 @@ use start::SettleFn;
 pub(crate) use start::{RayBodies, RayOf, settle_start, sliding};
 
 /// What is quicker than Algorithm 3 alone, and the second look at what that leaves open.
-#[allow(clippy::type_complexity, reason = "it is said once")]
+#[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct Quicker<V: Vector> {
     cast: CastFn<V>,
     settle: SettleFn<V>,

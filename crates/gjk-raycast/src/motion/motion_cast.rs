@@ -188,7 +188,7 @@ where
 }
 
 /// What a search does beyond looks at one time by GJK and at what was closest before.
-#[allow(clippy::type_complexity, reason = "it is said once")]
+#[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct FullMotion<V: Vector> {
     pub(super) closer: &'static Closer<V>,
     /// The cast of bodies that do not turn.

@@ -52,7 +52,7 @@ pub(crate) struct Wanted<V: Vector> {
 }
 
 /// The second and the third means of the search. Without them it answers what GJK knows.
-#[allow(clippy::type_complexity, reason = "it is said once")]
+#[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct Closer<V: Vector> {
     look_near: fn(&mut Cores<'_, V>, &Wanted<V>, Option<&Gjk<V>>) -> bool,
     reach: fn(&mut Cores<'_, V>, &Wanted<V>, &mut Gjk<V>, End, &mut Observer<'_, V>) -> Separation<V>,
