@@ -44,7 +44,7 @@ impl<V: Vector> HalfSpace<V> {
     /// The [`gradient`](crate::Impact::gradient) of a hit is that against a body at rest.
     ///
     /// # Errors
-    /// As of [`motion_cast`](crate::motion_cast()).
+    /// Those of [`motion_cast`](crate::motion_cast()).
     pub fn motion_cast<A: SupportMap<Vector = V> + ?Sized>(
         &self,
         shape: &A,
@@ -58,7 +58,7 @@ impl<V: Vector> HalfSpace<V> {
     /// is.
     ///
     /// # Errors
-    /// As of [`motion_cast`](crate::motion_cast()).
+    /// Those of [`motion_cast`](crate::motion_cast()).
     pub fn motion_cast_with<A: SupportMap<Vector = V> + ?Sized>(
         &self,
         shape: &A,
@@ -189,7 +189,7 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
         (height - way > margin).then_some(self.plane.unit)
     }
 
-    /// As of [two bodies](super::in_contact), of which only the one direction counts.
+    /// The same as for [two bodies](super::in_contact), with only one direction.
     fn stay_in_contact(&self, from: &Instant<V>, to: &Instant<V>, depth: V::Scalar) -> bool {
         self.body.strays(self.plane.unit, [from.time, to.time]) <= depth * Scalar::from_f64(4.0)
     }
