@@ -100,9 +100,9 @@ impl<S: SupportMap> Scene<S> {
 }
 
 impl<'s, S: SupportMap> Among<'s, S> {
-    /// Leaves out the pairs for whose indices `left_out` returns true, such as those of one group, or those that may
-    /// collide. It is called once for each pair whose boxes are near: with the lower index first, or for two scenes
-    /// with the index in the first one.
+    /// Leaves out the pairs for whose indices `left_out` returns true, such as those of one group, or those that
+    /// are allowed to collide. It is called once for each pair whose boxes are near: with the lower index first, or for
+    /// two scenes with the index in the first one.
     #[must_use]
     pub fn without_pairs(self, left_out: &'s (dyn Fn(usize, usize) -> bool + Sync + 's)) -> Self {
         Self { without_pairs: Some(left_out), ..self }
