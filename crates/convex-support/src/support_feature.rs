@@ -32,6 +32,7 @@ fn hash<V: Vector>(point: V) -> u32 {
 /// corners](Self::is_complete).
 ///
 /// Two shapes in contact touch where their features face each other. Each point has a number that stays the same as
+/// long as it is the same point of the shape, so that a contact can be recognised in the next frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feature<V> {
     points: [V; MAX_POINTS],

@@ -58,7 +58,7 @@ fn rounding<S: Scalar>() -> S {
 pub struct SweptBox<V: Vector> {
     /// What the smallest and the largest of a box are compared with: s + h and s − h.
     from: [V; 2],
-    /// 1/d, in the unit of d.
+    /// The reciprocal 1/d, in the unit of d.
     inverse: V,
     /// A power of two about as large as the largest coordinate of d.
     unit: V::Scalar,

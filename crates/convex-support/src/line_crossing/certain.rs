@@ -288,8 +288,8 @@ impl<V: Vector> NearLine<V> {
     /// `m²|Ad|² > 625·e²k²`, and `e²k²` less than `eg/5` if `e·k²` is less than a fifth of the least reciprocal; both,
     /// and that the slack is less than `m/8`, follow from `m²|Ad|² > 128·e·k`.
     ///
-    /// A line passes at more than `e` if `|w|(|w| − 1) > eg` for its nearest point; the left side is at least `(|w|² −
-    /// 1)/2`, and `g` is at most `k|w| ≤ k(1 + |w|²)/2`.
+    /// A line passes at more than `e` if `|w|(|w| − 1) > eg` for its nearest point; the left side is at least
+    /// `(|w|² − 1)/2`, and `g` is at most `k|w| ≤ k(1 + |w|²)/2`.
     #[inline(always)]
     pub(crate) fn ellipsoid(&self, axes: &V::Matrix, inverse_semi_axes: V) -> Option<CertainCrossing<V>> {
         let number = V::Scalar::from_f64;
@@ -564,9 +564,9 @@ impl<V: Vector> Chord<V> {
     /// to `error`; `None` if the line may miss the ball, or if the squared half of the chord is less than `least·er`.
     /// `recip` is `1/|direction|²`.
     ///
-    /// With the half `m`, `F = |x|² − r²` is `|d|²·σ·(σ ∓ 2m)` at `σ` within or before an end. With `σ =
-    /// 1.25·e·r/(m|d|²)`, which is less than `m/8` if `m²|d|² > 10er`, `F` is less than `−2.3er` at the one and more
-    /// than `2.5er` at the other: one point is deeper than `e`, and the other farther out.
+    /// With the half `m`, `F = |x|² − r²` is `|d|²·σ·(σ ∓ 2m)` at `σ` within or before an end. With
+    /// `σ = 1.25·e·r/(m|d|²)`, which is less than `m/8` if `m²|d|² > 10er`, `F` is less than `−2.3er` at the one and
+    /// more than `2.5er` at the other: one point is deeper than `e`, and the other farther out.
     #[inline(always)]
     fn slack(&self, radius: V::Scalar, error: V::Scalar, recip: V::Scalar, least: V::Scalar) -> Option<V::Scalar> {
         let to_end = radius * recip / self.half;
