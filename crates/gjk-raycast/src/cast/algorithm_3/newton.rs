@@ -31,7 +31,7 @@ impl<V: Vector> Recent<V> {
     }
 }
 
-/// Two support points are of one smooth piece if the curvature at one foretells this much of the other.
+/// Two support points are of one smooth piece if the curvature at one predicts this much of the other.
 const SAME_PIECE: f64 = 0.25;
 
 /// The largest tangent of an angle to turn by.

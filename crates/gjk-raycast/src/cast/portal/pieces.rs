@@ -38,7 +38,7 @@ impl<V: Vector> RayPiece<V> {
     ///
     /// The plane through the point alone is never crossed before the body, and the body's own plane earlier. How wrong
     /// the model may be is told by the angle that the plane turns by, and by how far the point moves; where that is too
-    /// far, or where it foretells less than was found, a point counts for itself alone. So much of its error as
+    /// far, or where it predicts less than was found, a point counts for itself alone. So much of its error as
     /// `error_weight` is added: where a model is wrong, its piece then shows itself, and is known anew.
     pub(super) fn at(
         &self,
