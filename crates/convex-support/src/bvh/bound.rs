@@ -189,7 +189,7 @@ impl<V: Vector> Bound<V> for BoxDistance<V> {
     #[inline(always)]
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
         let gaps = (around.min - self.of.max).max(self.of.min - around.max).max(V::ZERO);
-        // Whether boxes overlap nobody can foretell, and so it is no branch: only a gap whose square leaves the range
+        // Whether boxes overlap nobody can predict, and so it is no branch: only a gap whose square leaves the range
         // takes another way.
         let squared = gaps.length_squared();
         let is_plain = is_comfortable(squared) | (gaps.max_element() == V::Scalar::ZERO);

@@ -76,7 +76,7 @@ impl<V: Vector> Crossing<V> {
     #[inline]
     #[must_use]
     pub fn first_hit(&self, max_lambda: V::Scalar) -> Option<V::Scalar> {
-        // Not `&&` and `max`: half of the rays miss, and a branch that cannot be foretold takes longer than all of
+        // Not `&&` and `max`: half of the rays miss, and a branch that cannot be predicted takes longer than all of
         // this.
         let first = if self.entry > V::Scalar::ZERO { self.entry } else { V::Scalar::ZERO };
         ((self.exit >= V::Scalar::ZERO) & (self.entry <= max_lambda)).then_some(first)
