@@ -124,8 +124,8 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
     }
 }
 
-/// A [`SweptBox`] in the frame of a tree, with λ in a unit in which the largest coordinate of the direction is between
-/// 1 and 2.
+/// A [`SweptBox`] in the frame of a tree, with λ in a unit in which the largest coordinate of the direction
+/// is between 1 and 2.
 #[derive(Clone, Copy, Debug)]
 pub struct CoarseSweptBox<V> {
     /// What the side of a box that is met first is compared with, and what the other.

@@ -63,7 +63,7 @@ pub struct Polytope<V: Vector> {
     rounding: Rounding<V>,
 }
 
-/// The points, without what is kept to search them.
+/// The points, without the data for searching them.
 impl<V: Vector> fmt::Debug for Polytope<V> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Polytope").field("points", &self.points).finish()
