@@ -3,23 +3,22 @@
 //!
 //! The difference of two boxes is `c + Σ sᵢ·hᵢuᵢ + Σ tₖ·fₖ` with all `|sᵢ|, |tₖ| ≤ 1`: `uᵢ` are unit vectors along the
 //! edges of the first and `hᵢ` half their lengths, `fₖ` half edges of the second. Zero is in it unless it is beyond a
-//! facet, and each facet is spanned by two edges, so that with `n` one of `uᵢ`, `fₖ × fₘ` and `uᵢ × fₖ`
+//! facet, and each facet is spanned by two edges. So with `n` one of the 15 vectors `uᵢ`, `fₖ × fₘ` and `uᵢ × fₖ`,
 //!
 //! > gap(n) = |n·c| − Σ hᵢ|n·uᵢ| − Σ |n·fₖ|
 //!
-//! is positive for one of these 15 where they are apart. In the frame of the first box, with `Fₖ` the coordinates of
-//! `fₖ`, all terms are coordinates of the three products `Fₖ × Fₘ`, or wedges `(Fₖ × C)ᵢ`.
+//! is positive for one of them if they are apart. In the frame of the first box, with `Fₖ` the coordinates of `fₖ`, all
+//! terms are coordinates of the three products `Fₖ × Fₘ`, or wedges `(Fₖ × C)ᵢ`.
 //!
-//! *What is certain.* Let `e` bound what rounding, here and in the boxes, moves points by. Any `n` with a gap of more
-//! than `|n|·e` separates. That they meet takes all facets, and an edge that is nearly along another spans a sliver
-//! whose normal means nothing. So let `fₖ` be within `ρ` of a multiple of `uᵢ`. With that multiple in its place the
-//! difference reaches less far by `ρ` at most; its facets are those of the other edges, and they are seen, with `fₖ` as
-//! it is, to another `ρ`. Gaps of `−(e + 2ρ)·|n|` along all those are proof enough.
+//! *What is certain.* Let `e` bound how far rounding, here and in the boxes, moves points. Any `n` with a gap of more
+//! than `|n|·e` separates. To prove that they meet takes all facets, and an edge that is nearly along another spans a
+//! sliver whose normal means nothing. So let `fₖ` be within `ρ` of a multiple of `uᵢ`. With that multiple in its place,
+//! the difference shrinks by `ρ` at most. Its facets are those of the other edges, and their gaps, computed with the
+//! actual `fₖ`, are off by another `ρ`. Gaps of `−(e + 2ρ)·|n|` along all those facets are proof enough.
 //!
-//! *Why this is not the [depth](crate::signed_distance) of boxes.* That makes unit vectors of all axes, bounds what
-//! each facet is wrong by, and finds the points at its end. Of the same pairs, half of which overlap, it takes 3.4
-//! times the instructions (`signed_distance/cuboid-cuboid` and `intersect/cuboid-cuboid` of
-//! `benches/instructions.txt`).
+//! *Why this is not the [depth](crate::signed_distance) of boxes.* The depth makes unit vectors of all axes, bounds the
+//! error of each facet, and finds the points at its end. For the same pairs, half of which overlap, it takes 3.4 times
+//! the instructions (`signed_distance/cuboid-cuboid` and `intersect/cuboid-cuboid` of `benches/instructions.txt`).
 
 use convex_support::{CoreKind, Parallelotope, Scalar, Vector};
 use num_traits::Float;
@@ -28,29 +27,29 @@ use super::Frame;
 use crate::body::AnyPair;
 use crate::double::{Vec3, array, cross, dot};
 
-/// What rounding loses here, in ε of the bound on all lengths: coordinates `4ε` each, products of two `12ε`, sums of
-/// seven `6ε`, of both sides.
+/// The rounding here, in ε of the bound on all lengths: coordinates `4ε` each, products of two `12ε`, sums of seven
+/// `6ε`, for both sides.
 const ROUNDING: f64 = 64.0;
 
-/// The same for each part that two edges of the first box are not orthogonal by: a coordinate loses `2`, a product of
+/// The rounding per part by which two edges of the first box are not orthogonal: a coordinate loses `2`, a product of
 /// edges `12`.
 const SKEW: f64 = 16.0;
 
-/// Edges that are less orthogonal are of no box.
+/// Edges that are less orthogonal are not those of a box.
 const LARGEST_SKEW: f64 = 1.0 / 1024.0;
 
 /// A bound on the sum of all lengths, in units of the frame: its size is below two, the centre and the edges of a box
 /// together are at most twice its extent, and in the plane a sheet has a thickness of one.
 const LENGTHS: f64 = 5.0;
 
-/// How two boxes are to one another.
+/// Whether two boxes meet.
 pub(crate) enum BoxesMeet<V> {
     /// A plane across this unit vector from the second to the first separates them.
     Apart(V),
     Meet,
 }
 
-/// Whether two boxes without a radius meet; `None` where they are no boxes, flat, or so near to contact that it is in
+/// Whether two boxes without a radius meet; `None` if they are not boxes, flat, or so near to contact that it is in
 /// doubt.
 #[inline]
 pub(crate) fn boxes<V: Vector>(pair: &AnyPair<'_, V>, frame: &Frame<V>) -> Option<BoxesMeet<V>> {
@@ -63,15 +62,15 @@ pub(crate) fn boxes<V: Vector>(pair: &AnyPair<'_, V>, frame: &Frame<V>) -> Optio
     SeenFromFirst::new(&a, &b, frame)?.boxes()
 }
 
-/// The difference as the first box sees it.
+/// The difference in the frame of the first box.
 struct SeenFromFirst {
     /// The directions of the first box, in the world, and half the lengths of its edges.
     u: [Vec3; 3],
     h: Vec3,
-    /// The centre and the edges of the second, in coordinates along those.
+    /// The centre and the edges of the second box, in those coordinates.
     c: Vec3,
     f: [Vec3; 3],
-    /// What is wrong by rounding, in units of the frame.
+    /// The error by rounding, in units of the frame.
     error: f64,
 }
 
@@ -81,14 +80,14 @@ impl SeenFromFirst {
         let in_unit = |v: V| array(v * frame.per_unit);
         let mut edges = a.half_edges.map(in_unit);
         if V::DIM == 2 {
-            // A sheet of some thickness.
+            // A sheet of unit thickness.
             edges[2] = [0.0, 0.0, 1.0];
         }
         let h = edges.map(|edge| Float::sqrt(dot(edge, edge)));
         let u: [Vec3; 3] = core::array::from_fn(|i| edges[i].map(|x| x / h[i]));
         let [skew_x, skew_y, skew_z] = [dot(u[0], u[1]).abs(), dot(u[1], u[2]).abs(), dot(u[2], u[0]).abs()];
         let skew = skew_x.max(skew_y).max(skew_z);
-        // An edge without length makes NaN of one of them at least, and of the sum.
+        // An edge without length makes at least one of them NaN, and so the sum.
         if !(skew_x + skew_y + skew_z <= LARGEST_SKEW) {
             return None;
         }
@@ -103,7 +102,7 @@ impl SeenFromFirst {
     fn boxes<V: Vector>(&self) -> Option<BoxesMeet<V>> {
         let Self { h, c, f, error, .. } = self;
         let lengths = f.map(|f| Float::sqrt(dot(f, f)));
-        // Nearly along a direction of the first box, or of no length.
+        // Nearly along a direction of the first box, or without length.
         let off = core::array::from_fn(|k| {
             let [x, y, z] = f[k].map(|x| x * x);
             let least = (y + z).min(z + x).min(x + y);
@@ -113,7 +112,7 @@ impl SeenFromFirst {
         let deep = error + 2.0 * (first.unwrap_or(0.0) + second.unwrap_or(0.0) + third.unwrap_or(0.0));
 
         let mut all_meet = true;
-        // The facets of the first.
+        // The facets of the first box.
         for i in 0..3 {
             let gap = c[i].abs() - (h[i] + f[0][i].abs() + f[1][i].abs() + f[2][i].abs());
             if gap > *error {
@@ -121,7 +120,7 @@ impl SeenFromFirst {
             }
             all_meet &= -gap > deep;
         }
-        // Those of the second.
+        // The facets of the second box.
         let products = [cross(&f[1], &f[2]), cross(&f[2], &f[0]), cross(&f[0], &f[1])];
         let volume = dot(products[0], f[0]).abs();
         for (k, n) in products.iter().enumerate() {
@@ -134,7 +133,7 @@ impl SeenFromFirst {
             }
             all_meet &= off[l].is_some() | off[m].is_some() | (-gap > deep * length);
         }
-        // And those of an edge of each.
+        // The facets spanned by an edge of each.
         for k in 0..3 {
             let (f, [l, m]) = (&f[k], [(k + 1) % 3, (k + 2) % 3]);
             for [i, p, q] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {

@@ -21,23 +21,23 @@ pub(crate) use progress::Progress;
 pub(crate) use start::first_direction;
 pub(crate) use state::Gjk;
 
-/// Where the difference of two bodies is, and the unit it is measured in.
+/// The position of the difference of two bodies, and the unit of length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<V: Vector> {
     pub(crate) scale: V::Scalar,
     pub(crate) per_unit: V::Scalar,
-    /// The difference of the origins: zero lies at minus this, seen from the origin of `A − B`.
+    /// The difference of the origins: relative to the origin of `A − B`, zero is at minus this.
     pub(crate) offset: V,
-    /// The radii of both bodies.
+    /// The sum of the radii of both bodies.
     pub(crate) radius: V::Scalar,
-    /// What rounding moves the points by that the search compares; it looks no closer.
+    /// How far rounding moves the points that the search compares; it resolves nothing smaller.
     pub(crate) noise: V::Scalar,
-    /// What any bound is wrong by at most.
+    /// The largest error of any bound.
     pub(crate) error: V::Scalar,
 }
 
 impl<V: Vector> Frame<V> {
-    /// The frame of a pair whose origins and sizes are these, which is set to the frame's unit.
+    /// The frame of a pair with these origins and sizes; the pair is set to the frame's unit.
     #[inline]
     pub(crate) fn new<T: Shapes<Vector = V> + ?Sized>(pair: &mut Pair<'_, T>, offset: V, size: V::Scalar) -> Self {
         let scale = power_of_two_near(size);
@@ -55,13 +55,13 @@ impl<V: Vector> Frame<V> {
     }
 }
 
-/// What the arithmetic of a query adds to a bound on the distance of two bodies of the given size, beside what their
-/// support points are wrong by.
+/// What the arithmetic of a query adds to a bound on the distance of two bodies of the given size, beside the error of
+/// their support points.
 ///
 /// With `u = ε/2`, a lower bound `n·(a − b + offset)/|n|` loses `u` of the size for the offset, `2u` for the sums, `3u`
 /// for the products and `4u` for the quotient; an upper bound `|Σ wᵢ·(aᵢ − bᵢ) + offset|` loses `5u` for the weighted
-/// sums, `3u` for their difference and the offset, `3u` for the length, and what the weights sum up to is off one by,
-/// `4u`. It is the larger, with one for the radii.
+/// sums, `3u` for their difference and the offset, `3u` for the length, and `4u` because the weights do not sum to
+/// exactly one. The result is the larger, with one for the radii.
 #[inline]
 pub(crate) fn rounding<S: Scalar>(size: S) -> S {
     S::from_f64(8.0) * S::EPSILON * size
@@ -72,9 +72,9 @@ pub(crate) fn rounding<S: Scalar>(size: S) -> S {
 pub(crate) struct GjkOptions<V: Vector> {
     /// The first direction from zero to the difference, of any length but zero.
     pub(crate) first: V,
-    /// Stop where the cores are certainly farther apart than this.
+    /// Stop as soon as the cores are certainly farther apart than this.
     pub(crate) limit: V::Scalar,
-    /// Stop where the bracket is as narrow as this, relative to the least distance of the bodies.
+    /// Stop as soon as the bracket is as narrow as this, relative to the least distance of the bodies.
     pub(crate) tolerance: V::Scalar,
     /// Whether the closest points are asked for, and not only which of two bounds comes first.
     pub(crate) closest_points: bool,
@@ -108,15 +108,15 @@ struct Direction<V: Vector> {
     length: V::Scalar,
 }
 
-/// Runs GJK on the cores until their distance is known to rounding, or to exceed the limit, or not to exceed the radii.
+/// Runs GJK on the cores until their distance is known to rounding, or is known to exceed the limit, or not to exceed
+/// the radii.
 ///
-/// A step is first taken the fast way, by the regions of the newest point or as asked, and judged by what it achieves:
-/// one that brings the simplex no nearer is taken again by a search of all faces. The bounds that end the loop do not
-/// depend on how it came there: the lower one is that of a plane through a support point, and the upper one is measured
-/// again before it counts.
+/// A step is first taken the fast way, by the regions of the newest point or as asked. If it brings the simplex no
+/// nearer, it is taken again by a search of all faces. The bounds that end the loop do not depend on the steps: the
+/// lower one is that of a plane through a support point, and the upper one is measured again before it counts.
 ///
-/// `known` is the support point along the first direction, if there is one; the state is one that
-/// [began](Gjk::begin_at_closest), or with corners of its own.
+/// `known` is the support point along the first direction, if there is one. The state has
+/// [begun](Gjk::begin_at_closest), or has corners of its own.
 #[inline]
 pub(crate) fn gjk<B: TracedSupport>(
     state: &mut Gjk<B::Vector>,
@@ -127,11 +127,11 @@ pub(crate) fn gjk<B: TracedSupport>(
     observer: &mut Observer<'_, B::Vector>,
 ) -> End {
     let end = descend(state, body, &frame, &options, known, observer);
-    // Of numbers out of range nothing is known.
+    // Numbers out of range determine nothing.
     if !(frame.error < <B::Vector as Vector>::Scalar::infinity()) {
         return End::Stalled;
     }
-    // Where no progress is possible any more, the cores may be within rounding of touching.
+    // If no progress is possible any more, the cores may be within rounding of touching.
     if end == End::Stalled && state.length < <B::Vector as Vector>::Scalar::infinity() {
         state.ensure_measured();
         if state.length - frame.radius <= frame.noise {
@@ -159,7 +159,7 @@ fn descend<B: TracedSupport>(
         let Some(reach) = state.advance(looked, w) else { return End::Stalled };
         observer.show(|| state.iterate(w, frame.scale));
         if state.lower > options.limit + frame.error {
-            // The first support points are a bound from above, if nothing better is known.
+            // The first support points give an upper bound, if there is no better one.
             if options.closest_points && state.simplex.points().is_empty() {
                 state.simplex.push(w, -looked.n, witness);
             }
@@ -173,18 +173,18 @@ fn descend<B: TracedSupport>(
             }
         }
         state.simplex.push(w, -looked.n, witness);
-        // Where the bracket only seemed closed, the fast steps were not as good as they seemed.
+        // If the bracket only seemed closed, the fast steps were not as good as they seemed.
         let fast = if seems_closed { None } else { state.step(w, options.sub_algorithm) };
         if fast.is_none() && !seems_closed && next_direction.has_turned() {
-            // A plane that was turned away from the shortest vector may be the better bound without its support point
-            // bringing the simplex nearer.
+            // A plane that was turned away from the shortest vector may be the better bound although its support point
+            // does not bring the simplex nearer.
             state.simplex.pop();
             looked = next_direction.turn_again(body, state, looked, w, reach);
             continue;
         }
         let Some(mut v) = fast.or_else(|| state.step_by_all_faces(&mut nearing)) else {
-            // The fast steps' normal of a sliver leans by its rounding, and what supports the body along it may be a
-            // corner already. Measured, it shows another.
+            // The fast steps' normal of a sliver is off by rounding, so that the support point along it may be a corner
+            // already. Along the measured normal it is another one.
             state.ensure_measured();
             if looked.n != state.normal && nearing.goes_on(state.length) {
                 looked = state.along_normal();
@@ -206,7 +206,7 @@ mod tests {
 
     use super::rounding;
 
-    /// `n·(a − b + o)/|n|` in single precision is within [`rounding`] of that in double precision.
+    /// In single precision, `n·(a − b + o)/|n|` is within [`rounding`] of its value in double precision.
     #[test]
     fn rounding_covers_what_the_arithmetic_of_a_bound_loses() {
         let mut seed = 1_u32;
@@ -226,7 +226,7 @@ mod tests {
             assert!(lost <= allowed, "{lost:e} of {allowed:e}: {n} {a} {b} {o}");
             worst = worst.max(lost / allowed);
         }
-        // The bound is of the worst case, and not of some other order.
+        // The bound is that of the worst case, and not much larger.
         assert!(worst > 0.05, "{worst}");
     }
 }

@@ -1,5 +1,5 @@
-//! Where GJK looks next: along its shortest vector, or along one that is turned from it by curvature or towards the
-//! best plane known.
+//! The next direction of GJK: along its shortest vector, or along one that is turned from it by curvature or towards
+//! the best plane known.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -20,7 +20,7 @@ pub(super) struct NextDirection<V: Vector> {
 }
 
 impl<V: Vector> NextDirection<V> {
-    /// `curved` where steps by curvature are worth while.
+    /// `curved` if steps by curvature are worthwhile.
     pub(super) fn new(curved: bool, noise: V::Scalar) -> Self {
         Self { curved, newton: Newton::new(noise), levelled: false }
     }
@@ -30,8 +30,7 @@ impl<V: Vector> NextDirection<V> {
         self.levelled || self.newton.before.is_some()
     }
 
-    /// The direction after one that was turned, and whose support point `w`, with `reach` along it, brings the simplex
-    /// no nearer.
+    /// The direction after a turned one, whose support point `w`, with `reach` along it, brings the simplex no nearer.
     #[inline(always)]
     pub(super) fn turn_again<B: TracedSupport<Vector = V>>(
         &mut self,
@@ -47,8 +46,8 @@ impl<V: Vector> NextDirection<V> {
         turned.map_or_else(|| state.along_normal(), |n| Direction { n, length: Scalar::ONE })
     }
 
-    /// The direction after a step to the shortest vector `v`, which support point `w`, with `reach` along the last one,
-    /// led to.
+    /// The direction after a step to the shortest vector `v`, by the support point `w` with `reach` along the last
+    /// direction.
     #[inline(always)]
     pub(super) fn after<B: TracedSupport<Vector = V>>(
         &mut self,
@@ -64,8 +63,8 @@ impl<V: Vector> NextDirection<V> {
             return turned.map_or(v, |n| Direction { n, length: Scalar::ONE });
         }
         let levelled = if leaves_open(state) { in_range(level(state, v)) } else { None };
-        // Both directions may cancel. Deep in one another bodies have an axis opposite to the shortest vector, and what
-        // is between both is that axis again: the same support point would come back, over and over.
+        // The two directions may cancel. If bodies overlap deeply, the axis is opposite to the shortest vector, and a
+        // direction between them is the axis again: the same support point would come back forever.
         let levelled = levelled
             .filter(|direction| direction.n.dot(v.n) > -(direction.length * v.length) * V::Scalar::from_f64(OPPOSITE));
         self.levelled = levelled.is_some();
@@ -76,16 +75,16 @@ impl<V: Vector> NextDirection<V> {
 /// The shortest vector of a vertex or an edge is not trusted while the lower bound is below this part of its length.
 const TRUSTED: f64 = 0.5;
 
-/// The weight of the lower bound's axis in a direction between it and the shortest vector. Of 1.5, 2 and 3 it takes the
-/// fewest support points on average of polytopes of 8 to 1024 vertices.
+/// The weight of the lower bound's axis in a direction between it and the shortest vector. Among 1.5, 2 and 3 it takes
+/// the fewest support points on average, for polytopes of 8 to 1024 vertices.
 const AXIS_WEIGHT: f64 = 2.0;
 
 /// The cosine of the angle to the opposite of the shortest vector, above which a direction between that and the axis is
 /// the axis again.
 const OPPOSITE: f64 = 0.6;
 
-/// Whether the simplex leaves open where to look next, and its shortest vector says little about that. A triangle
-/// leaves nothing open, and polygons in the plane need few steps anyway.
+/// Whether the simplex does not determine the next direction, and its shortest vector is a poor guess. A triangle
+/// determines it, and polygons in the plane need few steps anyway.
 #[inline(always)]
 fn leaves_open<V: Vector>(state: &Gjk<V>) -> bool {
     let is_open = V::DIM == 3 && state.simplex.points().len() < V::DIM;
@@ -95,10 +94,10 @@ fn leaves_open<V: Vector>(state: &Gjk<V>) -> bool {
 /// A direction between the shortest vector `v` and the axis of the lower bound.
 ///
 /// Among unit vectors, the distance of `C = A − B` from zero is the maximum of `f(n) = min n·x` over all `x` of `C`.
-/// The points known of `C` bound `f` from above, and the shortest vector of their simplex is where that bound is
-/// largest. While they are few it is far from where `f` is, and moves from side to side, as cutting planes do. So, as
-/// in level bundle methods (Lemaréchal, Nemirovskii, Nesterov, 1995), only part of the way to it is gone from the best
-/// direction known. Where an edge is closest, both its ends should stay equally far: the way is across the edge.
+/// The known points of `C` bound `f` from above, and this bound is largest along the shortest vector of their simplex.
+/// With few points it is far from the maximum of `f`, and moves from side to side, as with cutting planes. So, as in
+/// level bundle methods (Lemaréchal, Nemirovskii, Nesterov, 1995), the step from the best direction known goes only
+/// part of the way. If an edge is closest, both its ends should stay equally far: the step is across the edge.
 #[inline(always)]
 fn level<V: Vector>(state: &Gjk<V>, v: Direction<V>) -> V {
     let mut axis = state.axis;
@@ -106,8 +105,8 @@ fn level<V: Vector>(state: &Gjk<V>, v: Direction<V>) -> V {
         let e = q - p;
         axis -= e * (axis.dot(e) / e.length_squared());
     }
-    // The sum of the unit vectors, times both lengths: from one such direction to the next it may become shorter and
-    // shorter.
+    // The sum of the unit vectors, times both lengths. Otherwise it may become shorter and shorter from one such
+    // direction to the next.
     v.n * state.axis_length + axis * (V::Scalar::from_f64(AXIS_WEIGHT) * v.length)
 }
 
@@ -130,7 +129,7 @@ fn level<V: Vector>(state: &Gjk<V>, v: Direction<V>) -> V {
 /// too where steps by curvature do not shrink the bracket.
 struct Newton<V: Vector> {
     noise: V::Scalar,
-    /// The support point found before the last one, and the direction it was found along.
+    /// The support point found before the last one, and its direction.
     last: Option<(V, V)>,
     /// The width of the bracket before the last turn, if the last step was one.
     before: Option<V::Scalar>,
@@ -141,11 +140,11 @@ struct Newton<V: Vector> {
 /// Turns that fail to halve the bracket before the next step is one of GJK.
 const MAX_FAILURES: usize = 2;
 
-/// How much lower than the first of two pieces the second is made, so that it is the one found next, relative to the
-/// bracket: more than the error of the model, by the number of failures before.
+/// How much lower than the first of two pieces the second is made, so that it is found next, relative to the bracket:
+/// more than the error of the model, by the number of failures before.
 const MODEL_ERROR: [f64; MAX_FAILURES] = [0.01, 0.2];
 
-/// A point contradicts the model where it takes away this much of the gain.
+/// A point contradicts the model if it takes away this part of the gain.
 const CONTRADICTION: f64 = 0.1;
 
 /// Two support points are of one smooth piece if the curvature at one predicts the other but for this part.
@@ -160,7 +159,7 @@ impl<V: Vector> Newton<V> {
     }
 
     /// The next unit direction, after `p` was found as the lowest point along the unit vector `n`, with `reach = n·p`.
-    /// `None` where the next should be that of the shortest vector.
+    /// `None` if the next should be that of the shortest vector.
     #[inline(never)]
     fn next<B: TracedSupport<Vector = V>>(
         &mut self,
@@ -183,7 +182,7 @@ impl<V: Vector> Newton<V> {
                 }
             }
         }
-        // As far as below, the bodies are as likely to overlap.
+        // If the plane is as far below zero as the point is above, overlap is as likely.
         if !(reach > -state.length) {
             return None;
         }
@@ -203,7 +202,7 @@ impl<V: Vector> Newton<V> {
         piece: LastPiece<V>,
         model_error: V::Scalar,
     ) -> Option<V> {
-        // One piece: (H + ρ)·δ = −P, no farther than is sensible, and the gain of f predicted.
+        // One piece: (H + ρ)·δ = −P, within the largest turn, and the predicted gain of f.
         let h = piece.hessian.plus(state.length);
         let d = h.solve((-piece.aside, V::Scalar::ZERO));
         let size = dot(d, d).sqrt();
@@ -215,7 +214,7 @@ impl<V: Vector> Newton<V> {
         let gain = -(piece.aside * d.0) - dot(d, h.times(d)) * V::Scalar::from_f64(0.5);
         let to = piece.turned_by(d)?;
 
-        // The known point that lies farthest before the plane predicted.
+        // The known point that lies farthest before the predicted plane.
         let mut least = piece.reach + gain * V::Scalar::from_f64(1.0 - CONTRADICTION) - self.noise;
         let mut second = None;
         let corners = state.simplex.points().iter().zip(state.simplex.along());
@@ -233,7 +232,7 @@ impl<V: Vector> Newton<V> {
         }
     }
 
-    /// The direction at which the last piece and that of another point, found along `from`, support one plane.
+    /// The direction along which the last piece and that of another point, found along `from`, support one plane.
     #[inline(always)]
     fn turn_between<B: TracedSupport<Vector = V>>(
         &self,
@@ -273,20 +272,20 @@ impl<V: Vector> Newton<V> {
     }
 }
 
-/// The piece of the surface that was looked at last.
+/// The piece of the surface at the last support point.
 struct LastPiece<V: Vector> {
     point: V,
-    /// The unit vector it was found along, and how far zero is from its plane.
+    /// The unit vector it was found along, and the distance of zero from its plane.
     along: V,
     reach: V::Scalar,
-    /// Unit vectors across it, the first along the part of the point across it, and how long that is.
+    /// Unit vectors across it, the first along the point's part across it, and the length of that part.
     basis: [V; 2],
     aside: V::Scalar,
     hessian: Symmetric<V::Scalar>,
 }
 
 impl<V: Vector> LastPiece<V> {
-    /// `None` where the surface is not curved there.
+    /// `None` if the surface is not curved there.
     #[inline(always)]
     fn new<B: TracedSupport<Vector = V>>(body: &B, point: V, along: V, reach: V::Scalar) -> Option<Self> {
         let across = point + along * reach;

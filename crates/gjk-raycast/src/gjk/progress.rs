@@ -2,10 +2,10 @@
 
 use convex_support::Scalar;
 
-/// Steps without progress after which there is none to be expected.
+/// Steps without progress after which none is expected.
 const MAX_STEPS_WITHOUT: u8 = 8;
 
-/// Watches a quantity that decreases in exact arithmetic, in every step, but in rounded arithmetic only mostly.
+/// Watches a quantity that decreases in every step in exact arithmetic, but only in most steps in rounded arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Progress<S> {
     least: S,
@@ -17,8 +17,8 @@ impl<S: Scalar> Progress<S> {
         Self { least: S::infinity(), steps_left: MAX_STEPS_WITHOUT }
     }
 
-    /// Takes the next value. False where it is NaN, and after too many values in a row that are no less than one
-    /// before.
+    /// Takes the next value. False if it is NaN, or after too many values in a row that are no less than an earlier
+    /// one.
     pub(crate) fn goes_on(&mut self, value: S) -> bool {
         if value < self.least {
             *self = Self { least: value, steps_left: MAX_STEPS_WITHOUT };

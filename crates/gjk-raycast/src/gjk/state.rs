@@ -1,4 +1,4 @@
-//! What GJK knows after each step: a simplex with its point closest to zero, and the best plane.
+//! The state of GJK after each step: a simplex with its point closest to zero, and the best plane.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -28,7 +28,7 @@ pub(crate) struct Gjk<V: Vector> {
 }
 
 impl<V: Vector> Gjk<V> {
-    /// The state before the first support point, which is to be along the given direction.
+    /// The state before the first support point, which is to be found along the given direction.
     #[inline(always)]
     pub(crate) fn new(first: V) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl<V: Vector> Gjk<V> {
         }
     }
 
-    /// Begins with a point of the difference, if that is finite, and with the vector to it for first direction. Whether
+    /// Begins with a point of the difference, if it is finite, and with the vector to it as first direction. Whether
     /// the bodies meet there, to rounding.
     #[inline(always)]
     pub(crate) fn begin_at(&mut self, point: V, witness: PointPair<V>, frame: &Frame<V>) -> bool {
@@ -57,8 +57,7 @@ impl<V: Vector> Gjk<V> {
         self.length <= frame.touching()
     }
 
-    /// The state at a face of the difference, of which `v` is the point closest to zero and is made of its corners with
-    /// these weights.
+    /// The state at a face of the difference: `v` is its point closest to zero, made of its corners with these weights.
     #[inline]
     pub(crate) fn at_face(
         corners: impl Iterator<Item = (V, PointPair<V>)>,
@@ -75,9 +74,9 @@ impl<V: Vector> Gjk<V> {
     }
 
     /// Raises the lower bound to the plane through the support point `w` along a direction, if it is higher: no point
-    /// of `A − B` lies before `w` along it (the paper's bound `‖v‖² − v·w`, divided by `‖v‖`). How high the plane is,
-    /// if that is finite. Of planes that are equally high the first
-    /// is kept: the later ones are along shorter vectors, of which more is rounding.
+    /// of `A − B` lies before `w` along it (the paper's bound `‖v‖² − v·w`, divided by `‖v‖`). Returns the height of
+    /// the plane, if finite. Among equally high planes the first is kept: later ones are along shorter vectors, with
+    /// more rounding.
     #[inline(always)]
     pub(super) fn advance(&mut self, Direction { n, length }: Direction<V>, w: V) -> Option<V::Scalar> {
         self.iterations += 1;
@@ -91,7 +90,7 @@ impl<V: Vector> Gjk<V> {
         Some(reach)
     }
 
-    /// Whether the bounds are as near to one another as rounding or the tolerance.
+    /// Whether the bracket is as narrow as rounding or the tolerance.
     #[inline(always)]
     pub(super) fn is_closed(&self, frame: &Frame<V>, tolerance: V::Scalar) -> bool {
         let gap = self.length - self.lower;
@@ -114,13 +113,13 @@ impl<V: Vector> Gjk<V> {
         }
     }
 
-    /// The shortest vector found and its length; as long as there is none, the first direction and infinity.
+    /// The shortest vector found and its length; before there is one, the first direction and infinity.
     fn shortest(&self) -> (V, V::Scalar) {
         let size = self.normal.length();
         if !self.length.is_finite() || size <= V::Scalar::ZERO {
             return (self.normal, self.length);
         }
-        // A sliver's normal leans by its rounding, and its corners are not equally far along it.
+        // A sliver's normal is off by rounding, and its corners are not equally far along it.
         let levels = self.simplex.points().iter().map(|p| self.normal.dot(*p) / size);
         let length = levels.fold(self.length, V::Scalar::max);
         (self.normal * (length / size), length)
@@ -135,21 +134,20 @@ impl<V: Vector> Gjk<V> {
     /// measured.
     #[inline(always)]
     pub(super) fn overlaps(&mut self, touching: V::Scalar, v: &mut Direction<V>) -> bool {
-        // No point is nearer than the lower bound: the length of a fast step in a sliver is its rounding. Taken for
-        // progress, it would have the same two steps go on forever.
+        // No point is nearer than the lower bound: the length of a fast step in a sliver is then its rounding. If it
+        // counted as progress, the same two steps would go on forever.
         if self.length < self.lower && !self.measured {
             *v = self.measure().unwrap_or(*v);
         }
-        // A simplex of full dimension contains zero, or is looked at more closely; of any other it remains to be
-        // measured, even where the fast step's length is zero, as it may be by rounding.
+        // A simplex of full dimension contains zero, or is searched more closely. Any other is still to be measured,
+        // even if the length of the fast step is zero, which rounding may make it.
         if self.length <= touching && self.simplex.points().len() <= V::DIM && !self.measured {
             *v = self.measure().unwrap_or(*v);
         }
         self.length <= touching
     }
 
-    /// Goes on to the face of the simplex closest to zero, if that is clear and brings it nearer. The newest point is
-    /// `y`.
+    /// Goes on to the face of the simplex closest to zero, if that face is clear and nearer. The newest point is `y`.
     #[inline(always)]
     pub(super) fn step(&mut self, y: V, sub_algorithm: SubAlgorithm) -> Option<Direction<V>> {
         if sub_algorithm != SubAlgorithm::Regions {
@@ -169,7 +167,7 @@ impl<V: Vector> Gjk<V> {
         }
     }
 
-    /// The same by another way to find the face.
+    /// A step by another way to find the face.
     #[cold]
     #[inline(never)]
     fn step_by(&mut self, sub_algorithm: SubAlgorithm) -> Option<Direction<V>> {
@@ -177,8 +175,8 @@ impl<V: Vector> Gjk<V> {
         if next.v.norm() < self.length { self.accept(next).map(|_| self.along_normal()) } else { None }
     }
 
-    /// The same by a search of all faces. Where rounding is all that is left to gain, a few steps without a gain are
-    /// allowed. `None`, and the newest point is not added, where there are too many of them.
+    /// A step by a search of all faces. If only rounding is left to gain, a few steps without a gain are allowed. After
+    /// too many of them it returns `None`, and the newest point is not added.
     #[cold]
     #[inline(never)]
     pub(super) fn step_by_all_faces(&mut self, nearing: &mut Progress<V::Scalar>) -> Option<Direction<V>> {
@@ -193,7 +191,7 @@ impl<V: Vector> Gjk<V> {
         self.accept(next)
     }
 
-    /// [Measures](Self::measure) the shortest vector where that was not done yet.
+    /// [Measures](Self::measure) the shortest vector unless that was done.
     #[inline(always)]
     pub(crate) fn ensure_measured(&mut self) {
         if !self.measured {
@@ -201,7 +199,7 @@ impl<V: Vector> Gjk<V> {
         }
     }
 
-    /// Measures the face closest to zero by orthogonal projection, whatever rounding the steps there left.
+    /// Measures the face closest to zero by orthogonal projection, free of the rounding of the steps before.
     #[inline(never)]
     fn measure(&mut self) -> Option<Direction<V>> {
         let points = self.simplex.points();
@@ -223,7 +221,7 @@ impl<V: Vector> Gjk<V> {
         self.now_at(v)
     }
 
-    /// Takes the measured shortest vector for the best known.
+    /// Takes the measured shortest vector as the best known.
     #[inline(always)]
     fn now_at(&mut self, v: V) -> Option<Direction<V>> {
         let direction = in_range(v)?;
@@ -232,7 +230,7 @@ impl<V: Vector> Gjk<V> {
     }
 }
 
-/// The direction of a vector, at a length whose square is in range; the zero vector as it is. `None` where it is not
+/// The direction of a vector, at a length whose square is in range; the zero vector as it is. `None` if it is not
 /// finite.
 #[inline]
 pub(super) fn in_range<V: Vector>(v: V) -> Option<Direction<V>> {
@@ -252,7 +250,7 @@ mod tests {
 
     use super::*;
 
-    /// A plane that is lower proves less; of planes that are equally high the first one is kept.
+    /// A lower plane proves less; among equally high planes the first one is kept.
     #[test]
     fn only_a_higher_plane_raises_the_lower_bound() {
         let mut state = Gjk::new(DVec3::X);
