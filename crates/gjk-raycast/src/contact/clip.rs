@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 use super::outline::{ContactPart, Corner, Outline};
 use crate::symmetric::{Across, cross, dot, way};
 
-/// A corner of the overlap, and what it is of the outline that was clipped and of the other.
+/// A corner of the overlap, and the part of the clipped outline and of the other one that it is on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clipped<S> {
     pub(crate) at: Across<S>,
@@ -15,8 +15,8 @@ pub(crate) struct Clipped<S> {
     edge: Edge,
 }
 
-/// An edge of the overlap: of the clipped outline, by the numbers of its ends, or the edge of the other with this
-/// index.
+/// An edge of the overlap: one of the clipped outline, by the numbers of its ends, or the edge of the other outline
+/// with this index.
 #[derive(Clone, Copy, Debug)]
 enum Edge {
     Own(u32, u32),
@@ -26,9 +26,9 @@ enum Edge {
 /// The corners of an overlap.
 pub(crate) type ClippedCorners<S> = SmallVec<[Clipped<S>; 32]>;
 
-/// The overlap of two outlines by Sutherland's and Hodgman's method: the first is cut along the edges of the second,
-/// one after the other. A segment is clipped by a polygon, and two segments by each other where they are parallel.
-/// Empty where there is none. An outline without corners is the whole plane.
+/// The overlap of two outlines by the method of Sutherland and Hodgman: the first is cut along each edge of the second.
+/// A segment is clipped by a polygon, and two parallel segments by each other. It is empty if there is none. An outline
+/// without corners is the whole plane.
 pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> ClippedCorners<S> {
     let (mut own_corners, mut rest) = (corners_of(&own.corners), ClippedCorners::new());
     let mut overlap = [&mut own_corners, &mut rest];
@@ -53,7 +53,7 @@ pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> ClippedCo
     SmallVec::from_slice(overlap[0])
 }
 
-/// Segments are parallel where they are so to within about a degree.
+/// Whether segments are parallel to within about a degree.
 fn are_parallel<S: Scalar>(a: Across<S>, b: Across<S>) -> bool {
     let turn = cross(a, b);
     turn * turn <= S::from_f64(3e-4) * dot(a, a) * dot(b, b)
@@ -69,8 +69,8 @@ fn corners_of<S: Scalar>(corners: &[Corner<S>]) -> ClippedCorners<S> {
     corners.iter().enumerate().map(corner).collect()
 }
 
-/// Leaves of a polygon or a segment, the first of two lists, what is where `inside` is not negative. The cut is along
-/// the part `along` of the other outline, which is its edge of index `index`.
+/// Keeps the part of a polygon or a segment, the first of two lists, in which `inside` is not negative. The cut is
+/// along the part `along` of the other outline, which is its edge of index `index`.
 fn cut<S: Scalar>(
     lists: &mut [&mut ClippedCorners<S>; 2],
     index: usize,

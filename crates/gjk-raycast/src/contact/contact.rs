@@ -81,7 +81,7 @@ where
     let axis = options.axis.or(last.map(|last| last.normal));
     let limit = options.limit.min(within);
     let answer = signed_distance(a, b, SignedDistanceOptions { axis, limit, ..options });
-    // NaN is farther than anything, and so is what nothing is known of.
+    // A NaN or infinite distance is beyond any limit.
     if !(answer.signed_distance <= within && answer.signed_distance.is_finite()) {
         return None;
     }

@@ -1,4 +1,4 @@
-//! The points in which two shapes in contact carry each other.
+//! The points at which two shapes in contact support each other.
 
 use convex_support::{CoreKind, Scalar, ScalarOf, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
@@ -13,21 +13,21 @@ use super::{Contact, ContactPoint};
 use crate::SignedDistance;
 use crate::symmetric::{Across, axes_across, cross, dot, way};
 
-/// As a part of the smaller shape's size: how near a corner of one shape's feature a point is that counts as the
-/// corner.
+/// How near a point is to a corner of a shape's feature if it counts as the corner, as a part of the smaller shape's
+/// size.
 const NEAR: f64 = 1.0 / 64.0;
 
 /// As a part of the smaller shape's size: how much farther apart than asked for the shapes may be at a point, and how
-/// much less deep than the deepest all points may be. While shapes move by less than half of that, the manifold keeps
-/// its corners.
+/// much less deep than the deepest all points may be. While shapes move by less than half of it, the manifold keeps its
+/// corners.
 const SLACK: f64 = 1.0 / 1024.0;
 
 /// The sine of the angle from which on segments cross in one point.
 const CROSSES: f64 = 0.25;
 
 /// The points where the features of both shapes that face each other overlap, at most four, and the closest points, if
-/// those are deeper; they are alone where one of the features is a vertex, or where edges cross. Of `last`, the points
-/// of the last manifold, those are preferred that still hold.
+/// deeper. If one of the features is a vertex, or edges cross, only the closest points. Points of the `last` manifold
+/// that still hold are preferred.
 pub(super) fn manifold<A, B>(
     a: &A,
     b: &B,
@@ -50,7 +50,7 @@ where
     if is_single { single(answer) } else { by_clipping([&a, &b], answer, within, last) }
 }
 
-/// The same of a shape over a plane, `b`, without an end: the corners of the feature that faces it.
+/// The manifold of a shape over an unbounded plane `b`: the corners of the feature that faces it.
 pub(crate) fn manifold_over_plane<A>(
     a: &A,
     answer: &SignedDistance<A::Vector>,
@@ -63,7 +63,7 @@ where
     if let CoreKind::Point(_) = a.core().kind { single(answer) } else { by_plane(&a, answer, within, last) }
 }
 
-/// The closest points alone, of what is round or of segments that cross.
+/// The closest points alone, for round features or segments that cross.
 fn single<V: Vector>(answer: &SignedDistance<V>) -> Contact<V> {
     let &SignedDistance { point_a, point_b, signed_distance, lower, upper, .. } = answer;
     let (error, face) = (upper - lower, ContactPart::Face.code());
@@ -83,7 +83,7 @@ compiled_once! {
 }
 
 /// [`manifold`] behind pointers. It is computed for the shapes in the order in which the normal points to one side of
-/// space, so that it is the same, to the last bit, whichever is named first.
+/// space, so that it is the same, to the last bit, in either order of the call.
 fn between<V: Vector>(
     [a, b]: [&dyn Surface<V>; 2],
     answer: &SignedDistance<V>,
@@ -104,7 +104,7 @@ fn between<V: Vector>(
     let size = (core_a.extent + core_a.radius).min(core_b.extent + core_b.radius);
     let reach = Reach::new(answer, within, size);
     let level = answer.signed_distance * -half;
-    // The closest points are one beside the other by as much as is not known of the normal.
+    // The closest points may be shifted against each other by the uncertainty of the normal.
     let levels = [level, level + (answer.upper - answer.lower)];
     let side = |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, levels);
     Facing { sides: [side(a, &core_a, -normal), side(b, &core_b, normal)], reach, last }.contact(answer, [level, level])
@@ -129,7 +129,7 @@ compiled_once! {
     }
 }
 
-/// What is taken for a corner.
+/// The distances within which a point counts as a corner.
 struct Reach<S> {
     within: S,
     /// How far behind its supporting plane a shape may be met by the other one.
@@ -139,8 +139,8 @@ struct Reach<S> {
 }
 
 impl<S: Scalar> Reach<S> {
-    /// A point of a shape that is in the other one, or within what was asked for, is no farther behind the supporting
-    /// plane than the depth and that.
+    /// A point of a shape that is in the other one, or no farther from it than asked for, is no farther behind the
+    /// supporting plane than the depth plus that distance.
     fn new<V: Vector<Scalar = S>>(answer: &SignedDistance<V>, within: S, size: S) -> Self {
         let slack = size * S::from_f64(SLACK);
         let slab = (within - answer.lower).max(S::ZERO) + slack + slack;
@@ -151,15 +151,15 @@ impl<S: Scalar> Reach<S> {
 /// Points that a manifold may have.
 type Candidates<S> = SmallVec<[Candidate<S>; 16]>;
 
-/// Points that it has.
+/// The points that it has.
 type Chosen<S> = SmallVec<[Candidate<S>; MAX_POINTS]>;
 
-/// As many points as span an overlap.
+/// The number of points that span an overlap.
 fn most<V: Vector>() -> usize {
     if V::DIM == 2 { 2 } else { MAX_POINTS }
 }
 
-/// Both shapes, as they are seen from one another.
+/// Both shapes, each in the frame of the other's contact plane.
 struct Facing<'s, V: Vector> {
     sides: [Side<'s, V>; 2],
     reach: Reach<V::Scalar>,
@@ -168,7 +168,7 @@ struct Facing<'s, V: Vector> {
 
 impl<V: Vector> Facing<'_, V> {
     /// The corners of the overlap where the shapes are no farther apart than asked for, reduced to four, in the plane
-    /// to two; and the closest points, which reach to these levels.
+    /// to two; and the closest points, at these levels.
     fn contact(&mut self, answer: &SignedDistance<V>, levels: [V::Scalar; 2]) -> Contact<V> {
         self.sides.iter_mut().for_each(|side| side.see(self.reach.slab));
         let candidates = self.corners(answer.lower);
@@ -191,7 +191,7 @@ impl<V: Vector> Facing<'_, V> {
     fn corners(&mut self, deepest: V::Scalar) -> Candidates<V::Scalar> {
         let mut candidates = Candidates::new();
         let [a, b] = [0, 1].map(|i| self.sides[i].outline.corners.len());
-        // A plane without an end has no corners.
+        // An unbounded plane has no corners.
         if a < 2 || b == 1 {
             return candidates;
         }
@@ -217,7 +217,7 @@ impl<V: Vector> Facing<'_, V> {
             if candidate.gap() <= limit {
                 candidates.push(candidate);
             } else {
-                // Between points of shapes that are apart the shapes may overlap.
+                // Between points of shapes that are apart, the shapes may overlap.
                 let measured = self.measured(candidate, deepest, limit);
                 candidates.extend(measured.filter(|measured| measured.gap() <= limit));
             }
@@ -225,8 +225,8 @@ impl<V: Vector> Facing<'_, V> {
         candidates
     }
 
-    /// With the levels of the surfaces. `None` where these are farther apart than the `limit`, or not known, as at a
-    /// vertex that is behind what a shape shows: a side is along the normal there.
+    /// The candidate with the levels of the surfaces. `None` if these are farther apart than the `limit`, or unknown,
+    /// as at a vertex behind the visible part of a shape: a side is along the normal there.
     fn measured(
         &mut self,
         candidate: Candidate<V::Scalar>,
@@ -238,12 +238,12 @@ impl<V: Vector> Facing<'_, V> {
         }
         let [of_a, of_b] = &mut self.sides;
         let at = candidate.at;
-        // Mostly one support point of each tells that they are farther apart.
+        // Mostly one support point of each proves that they are farther apart.
         let most = if limit.is_finite() { of_b.level(at, -limit - of_a.top, 1)?.most() } else { limit };
         let of_a = of_a.level(at, -limit - most, MAX_SUPPORT_POINTS)?;
         let of_b = of_b.level(at, -limit - of_a.most(), MAX_SUPPORT_POINTS)?;
-        // Seen nearly from its end an edge is as steep as one likes, and where a corner is on it is rounding; but no
-        // points of the shapes are deeper in one another than the shapes are.
+        // An edge whose projection is short may be arbitrarily steep, and rounding decides where a corner is on it; but
+        // no points of the shapes are deeper in one another than the shapes are.
         let lack = (deepest + of_a.value + of_b.value).max(V::Scalar::ZERO) * Scalar::from_f64(0.5);
         let error = of_a.error + of_b.error + lack;
         (error <= self.reach.slack).then_some(Candidate {
@@ -253,8 +253,8 @@ impl<V: Vector> Facing<'_, V> {
         })
     }
 
-    /// Whether a corner of the overlap, where two edges cross, is on a line with its neighbours but for the slack: of
-    /// edges that lie on one another, rounding tells where they cross.
+    /// Whether a corner of the overlap, where two edges cross, is on a line with its neighbours within the slack:
+    /// rounding decides where two edges that lie on one another cross.
     fn is_on_a_line(&self, overlap: &ClippedCorners<V::Scalar>, i: usize) -> bool {
         let n = overlap.len();
         let at = |i: usize| overlap[i % n].at;
@@ -264,8 +264,8 @@ impl<V: Vector> Facing<'_, V> {
     }
 
     /// Adds the closest points if none of the chosen is as deep: features that are not quite flat are closest in their
-    /// midst, and those of vertices, or of edges that cross, have no corners in common. One near them is the same
-    /// point, and moves there; where there is no room, the nearest makes it.
+    /// midst, and those of vertices, or of edges that cross, have no common corners. A chosen point near them is the
+    /// same point, and moves there; if there is no room, they replace the nearest.
     fn add_closest(
         &self,
         chosen: &mut Chosen<V::Scalar>,
@@ -274,7 +274,7 @@ impl<V: Vector> Facing<'_, V> {
         levels: [V::Scalar; 2],
     ) {
         let deepest = answer.upper + self.reach.slack;
-        // NaN is as deep as anything.
+        // NaN counts as deep.
         if chosen.iter().any(|candidate| !(candidate.gap() > deepest)) {
             return;
         }
@@ -302,9 +302,9 @@ impl<V: Vector> Facing<'_, V> {
         }
     }
 
-    /// What a point is of both shapes: a corner of a feature that it is near to, or else what clipping says. Where
-    /// corners of both lie on one another, as of boxes stacked, it would change from frame to frame which of them is
-    /// within the other's outline.
+    /// The parts of both shapes that a point is on: a corner of a feature if it is near one, or else the part that
+    /// clipping found. If corners of both coincide, as in stacked boxes, clipping would change from frame to frame
+    /// which of them is within the other's outline.
     fn settled(&self, at: Across<V::Scalar>, parts: [ContactPart; 2]) -> [ContactPart; 2] {
         let near = self.reach.near;
         let corner = |outline: &Outline<V::Scalar>| {

@@ -1,4 +1,4 @@
-//! Contact: how far apart two shapes are or how deep in one another, and which way out.
+//! Contact: how far apart two shapes are or how deep in one another, and along which normal.
 
 mod clip;
 #[allow(clippy::module_inception, reason = "a file is a public function, and the folder has the name of the subject")]

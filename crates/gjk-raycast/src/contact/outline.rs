@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 
 use crate::symmetric::{Across, cross, dot, way};
 
-/// What a point of contact is of one shape: a corner of its feature, a point of an edge, or one of the face.
+/// The part of one shape that a point of contact is on: a corner of its feature, an edge, or the face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ContactPart {
     Vertex(u32),
@@ -16,13 +16,13 @@ pub(crate) enum ContactPart {
 }
 
 impl ContactPart {
-    /// A number that is the same as long as the part is. The upper two bits tell the kind.
+    /// A number that is the same as long as the part is. The upper two bits give the kind.
     pub(crate) fn code(self) -> u32 {
         const PAYLOAD: u32 = u32::MAX >> 2;
         match self {
             Self::Vertex(id) => id & PAYLOAD,
             Self::Edge(a, b) => {
-                // Multiplied by an odd number, so that edges of a few hundred vertices have numbers of their own.
+                // Multiplied by an odd number, so that edges of a few hundred vertices have different numbers.
                 let ends = a.min(b).wrapping_mul(0x9e37_79b1).wrapping_add(a.max(b).wrapping_mul(0x0001_0001));
                 ends & PAYLOAD | 1 << 30
             }
@@ -84,14 +84,14 @@ impl<S: Scalar> Outline<S> {
         Self { corners: SmallVec::new(), rim: None, is_complete: true }
     }
 
-    /// Becomes that of a feature. An outline is long, and so better drawn where it stays than moved there.
+    /// Becomes the outline of a feature. It is large, and better filled in place than moved.
     pub(crate) fn draw<V: Vector<Scalar = S>>(&mut self, feature: &Feature<V>, origin: V, plane: &ContactPlane<V>) {
         let from = origin - plane.origin;
         let [e, f] = plane.across;
         let seen = |(&point, &id): (&V, &u32)| plane.corner(from + point, id);
         self.corners.clear();
         (self.rim, self.is_complete) = (None, feature.is_complete());
-        // Of what is curved, and of a vertex, there is nothing to wrap and nothing to copy.
+        // A curved feature, or a vertex, needs no wrapping and no copy.
         if let ([point], [id]) = (feature.points(), feature.ids()) {
             self.corners.push(seen((point, id)));
             return;
@@ -137,10 +137,10 @@ pub(super) fn spread<S: Scalar>((x, y): Across<S>) -> S {
 }
 
 /// The convex hull of points in the plane, counterclockwise from the one that is least in `x`. Points within rounding
-/// of an edge are none of the corners: what is no wider than that is a segment, and what is no longer a single point.
-/// Coordinates are off by the `noise`, which may be more than the whole hull: a needle far away.
+/// of an edge are not corners: points no wider than that make a segment, and no longer than that a single point.
+/// Coordinates are off by the `noise`, which may exceed the whole hull: a needle far away.
 ///
-/// After Andrew: of the points in their order along a long way through the hull, those that turn to the inside are
+/// After Andrew: the points are taken in their order along a long way through the hull, and those that turn inwards are
 /// dropped, on the way there and on the way back.
 pub(super) fn wrap<S: Scalar>(points: &mut [Corner<S>], noise: S, corners: &mut SmallVec<[Corner<S>; 16]>) {
     let edge = |a: &Corner<S>, b: &Corner<S>| way(a.at, b.at);
@@ -170,7 +170,7 @@ pub(super) fn wrap<S: Scalar>(points: &mut [Corner<S>], noise: S, corners: &mut 
                 }
                 corners.pop();
             }
-            // What ends one way begins the other.
+            // The last point of one way begins the other.
             if i < last {
                 corners.push(next);
             }
@@ -205,7 +205,7 @@ mod tests {
         assert_eq!(corners(&points, 0.0), [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]);
     }
 
-    /// What is no wider than the noise is a segment, and what is no longer a point.
+    /// Points no wider than the noise make a segment, and no longer than it a point.
     #[test]
     fn what_is_narrower_than_the_noise_spans_nothing() {
         let points = [(0.0, 0.0), (1.0, 1e-9), (2.0, -1e-9), (3.0, 0.0)];

@@ -6,23 +6,23 @@ use smallvec::SmallVec;
 use super::result::MAX_POINTS;
 use crate::symmetric::{Across, cross, way};
 
-/// The part of the area that may be lost, so that of corners that do as well the same are kept, whichever rounding
-/// prefers; four times as much to keep those of the last manifold.
+/// The part of the area that may be lost, so that among equally good corners the same are kept, whatever the rounding;
+/// four times as much to keep those of the last manifold.
 pub(super) const WORTHWHILE: f64 = 1.0 / 64.0;
 
-/// Of corners that do as well, those of the least rank are kept: those of the last manifold, and then the least by what
-/// they are of both shapes, which does not jitter.
+/// Among equally good corners, those of the least rank are kept: those of the last manifold, and then the least codes
+/// of the parts of both shapes, which do not jitter.
 pub(super) type Rank = (bool, [u32; 2]);
 
-/// A point of contact in the plane: where it is, how far both shapes reach there, and the [code](ContactPart::code) of
-/// what it is of each.
+/// A point of contact in the plane: its place, the levels of both shapes there, and the [code](ContactPart::code) of
+/// the part of each that it is on.
 #[derive(Clone, Copy)]
 pub(super) struct Candidate<S> {
     pub(super) at: Across<S>,
     pub(super) levels: [S; 2],
     pub(super) error: S,
     pub(super) codes: [u32; 2],
-    /// Whether it is that of the closest points, which are known better than places in the plane.
+    /// Whether it is that of the closest points, which are more accurate than places in the plane.
     pub(super) is_closest: bool,
 }
 
@@ -47,10 +47,10 @@ pub(super) fn reduced<S: Scalar>(
     SmallVec::from_buf(spanning(candidates, margin, rank))
 }
 
-/// Four corners of a convex polygon of more, counterclockwise, that span as much as any but for a part of that, the
-/// `margin`: of those that do, the ones of least rank.
+/// Four corners of a convex polygon with more, counterclockwise, that span as much as any but for the part `margin`;
+/// among those, the ones of least rank.
 ///
-/// A diagonal and the corners farthest from it on either side make the most of it. As the diagonal turns, these go on
+/// For a given diagonal, the corners farthest from it on either side span most. As the diagonal turns, these go on
 /// around the polygon.
 fn spanning<S: Scalar>(polygon: &[Candidate<S>], margin: f64, rank: impl Fn(usize) -> Rank) -> [usize; 4] {
     let count = polygon.len();
@@ -113,8 +113,8 @@ mod tests {
         0.5 * cross(way(at(i), at(k)), way(at(j), at(l)))
     }
 
-    /// Of all quadrilaterals of random polygons none spans more than a thirtieth more. Exchanging one corner at a time
-    /// ended at 0.83 of the most.
+    /// No quadrilateral of a random polygon spans more than a thirtieth more. Exchanging one corner at a time ended
+    /// at 0.83 of the most.
     #[test]
     fn four_corners_span_nearly_as_much_as_any() {
         let mut state = 1_u64;
@@ -142,7 +142,7 @@ mod tests {
         }
     }
 
-    /// Of a regular polygon many quadrilaterals span as much, and rounding would tell which spans most.
+    /// Many quadrilaterals of a regular polygon span equally much, and rounding would decide which spans most.
     #[test]
     fn what_spans_as_much_stays() {
         for count in 5..20_u32 {

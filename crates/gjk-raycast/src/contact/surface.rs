@@ -1,4 +1,4 @@
-//! How high the surface of a shape is over a place in the plane of contact.
+//! The height of the surface of a shape over a place in the plane of contact.
 
 use convex_support::numerics::twofold::dot_minus;
 use convex_support::{Core, Feature, Hint, Scalar, SupportMap, Vector};
@@ -9,17 +9,17 @@ use super::outline::{ContactPlane, Corner, Outline, spread, wrap};
 use crate::level::Level;
 use crate::symmetric::{Across, cross, dot, way};
 
-/// Support points after which a height is given up. A polytope takes a few; on what is curved each takes three quarters
-/// of the error away.
+/// Support points after which the search for a height is given up. A polytope takes a few; on a curved surface each
+/// removes three quarters of the error.
 pub(super) const MAX_SUPPORT_POINTS: usize = 32;
 
-/// As many points as are kept of a shape.
+/// The number of points kept of a shape.
 const KNOWN: usize = 24;
 
-/// How steep a side of a shape is, as a slope, beyond which nothing is shown.
+/// The slope beyond which a side of a shape is not visible.
 const STEEP: f64 = 4.0;
 
-/// What a manifold asks of a shape. Behind a pointer, so that the rest is compiled once.
+/// The queries of a shape that a manifold needs. Behind a pointer, so that the rest is compiled once.
 pub(crate) trait Surface<V: Vector> {
     fn parts(&self) -> Core<V>;
     fn feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>);
@@ -75,7 +75,7 @@ impl<S: Scalar> Tangent<S> {
     }
 }
 
-/// A shape as it is seen from the other one.
+/// A shape seen along the normal of contact.
 pub(super) struct Side<'s, V: Vector> {
     surface: Option<&'s dyn Surface<V>>,
     /// The plane of contact, with the normal out of this shape. Heights over it are levels.
@@ -84,19 +84,19 @@ pub(super) struct Side<'s, V: Vector> {
     from: V,
     radius: V::Scalar,
     pub(super) outline: Outline<V::Scalar>,
-    /// Points of the shape that are known: first those in the slab, then what levels were found by.
+    /// Known points of the shape: first those in the slab, then those found by the search for levels.
     known: SmallVec<[Corner<V::Scalar>; KNOWN]>,
-    /// How far the shape reaches, as it is known and at most.
+    /// The support value of the shape along the normal, as found and at most.
     reach: V::Scalar,
     pub(super) top: V::Scalar,
-    /// The face, or a plane along the edge, that all corners are in and no point of the shape is beyond.
+    /// The face, or a plane along the edge, that contains all corners, with no point of the shape beyond.
     flat: Option<Tangent<V::Scalar>>,
-    /// What the coordinates of points lose by rounding.
+    /// The rounding of the coordinates of points.
     noise: V::Scalar,
 }
 
 impl<'s, V: Vector> Side<'s, V> {
-    /// Of a shape of which nothing has been [seen](Self::see) yet. A side is long, and better made where it stays.
+    /// A shape of which nothing has been [seen](Self::see) yet. A side is large, and better made in place.
     #[inline(always)]
     pub(super) fn new(
         surface: &'s dyn Surface<V>,
@@ -110,7 +110,7 @@ impl<'s, V: Vector> Side<'s, V> {
         Self { surface: Some(surface), plane, from, radius, reach, top, flat, noise, ..Self::flat(plane) }
     }
 
-    /// Of a half-space that the plane ends.
+    /// A half-space bounded by the plane.
     #[inline(always)]
     pub(super) fn flat(plane: ContactPlane<V>) -> Self {
         let zero = V::Scalar::ZERO;
@@ -129,8 +129,8 @@ impl<'s, V: Vector> Side<'s, V> {
         }
     }
 
-    /// Draws the outline of the points of the shape that are in a slab. Those beyond a side of it that is nearly along
-    /// the normal are no part of what it shows: of a thin plate both faces are in the slab.
+    /// Draws the outline of the points of the shape in a slab. Points beyond a side that is nearly along the normal are
+    /// not visible: both faces of a thin plate may be in the slab.
     pub(super) fn see(&mut self, slab: V::Scalar) {
         let Some(surface) = self.surface else { return };
         let mut feature = Feature::new();
@@ -144,8 +144,8 @@ impl<'s, V: Vector> Side<'s, V> {
         wrap(&mut shown, self.noise, &mut self.outline.corners);
     }
 
-    /// Looks whether the outline is that of a face or an edge, as it mostly is: one support point then tells the levels
-    /// of all places.
+    /// Finds out whether the outline is that of a face or an edge, as it mostly is: one support point then gives the
+    /// levels of all places.
     pub(super) fn flatten(&mut self) {
         let corners = &self.outline.corners;
         let n = corners.len();
@@ -161,12 +161,12 @@ impl<'s, V: Vector> Side<'s, V> {
         }
     }
 
-    /// What a level of a plane loses by rounding.
+    /// The rounding of a level of a plane.
     fn rounding(&self, Tangent { gradient: (x, y), .. }: &Tangent<V::Scalar>) -> V::Scalar {
         self.noise * (V::Scalar::ONE + x.abs() + y.abs())
     }
 
-    /// The point of the shape that is farthest beyond a plane, and how far along the normal of contact.
+    /// The point of the shape farthest beyond a plane, and how far along the normal of contact.
     fn beyond(&self, tangent: &Tangent<V::Scalar>) -> Option<(Corner<V::Scalar>, V::Scalar)> {
         let ContactPlane { normal, across: [e, f], .. } = self.plane;
         let direction = normal - e * tangent.gradient.0 - f * tangent.gradient.1;
@@ -182,20 +182,20 @@ impl<'s, V: Vector> Side<'s, V> {
         Some(self.plane.corner(point, 0))
     }
 
-    /// A level at a place within the outline that points of the shape between its corners have.
+    /// A level at a place within the outline, of points of the shape between its corners.
     pub(super) fn chord(&self, at: Across<V::Scalar>) -> V::Scalar {
         self.flat.unwrap_or_else(|| Tangent::through(&self.around(at))).level(at)
     }
 
-    /// The level of the surface at a place within the outline, and by how much that may be too little, found by no more
-    /// than so many support points.
+    /// The level of the surface at a place within the outline, and by how much it may be too little, found by at most
+    /// so many support points.
     ///
-    /// Points of the shape around the place, first those of the outline, are in the shape with all between them. The
-    /// plane through them is moved out until it supports the shape: the surface is between the two. If they are not the
-    /// same, the point that supports takes the place of one of the others, so that the place is still among them. At a
-    /// face of a polytope this ends with the face. Points that are known already are taken first.
+    /// Points of the shape around the place, first those of the outline, are in the shape with all points between them.
+    /// The plane through them is moved out until it supports the shape: the surface is between the two planes. If they
+    /// differ, the supporting point replaces one of the others, so that the place is still among them. At a face of a
+    /// polytope this ends with the face. Known points are tried first.
     ///
-    /// `None` where the shape is not over the place, or its level is less than the `least` that is of use.
+    /// `None` if the shape is not over the place, or its level is less than `least`.
     pub(super) fn level(
         &mut self,
         at: Across<V::Scalar>,
@@ -211,7 +211,7 @@ impl<'s, V: Vector> Side<'s, V> {
         for _ in 0..2 * MAX_SUPPORT_POINTS {
             let tangent = Tangent::through(&around);
             let allowed = self.rounding(&tangent);
-            // NaN, of points in a row, ends this too.
+            // NaN, from points on one line, ends this too.
             if !allowed.is_finite() {
                 break;
             }
@@ -244,12 +244,12 @@ impl<'s, V: Vector> Side<'s, V> {
                 break;
             }
         }
-        // A side so steep is along the normal, but for rounding, and where it is is not known.
+        // So steep a side is along the normal to rounding, and its position is unknown.
         let is_known = lost * (V::Scalar::EPSILON.sqrt() * V::Scalar::from_f64(16.0)) <= self.noise;
         is_known.then(|| Level { value, error: (most - value).max(V::Scalar::ZERO) + lost })
     }
 
-    /// Whether a place is beside an outline that is a segment, as it may be where that is nearly parallel to the other
+    /// Whether a place is beside an outline that is a segment, which happens if it is nearly parallel to the other
     /// shape's.
     fn is_aside(&self, at: Across<V::Scalar>) -> bool {
         let [p, q] = self.outline.corners[..] else { return false };
@@ -272,7 +272,7 @@ impl<'s, V: Vector> Side<'s, V> {
     }
 
     /// Points of the shape around a place beside its outline: its ends, and then farthest points along the plane, each
-    /// on the other side of an edge that the place is beyond. `None` where the shape is not over the place.
+    /// on the other side of an edge that the place is beyond. `None` if the shape is not over the place.
     fn beside(&self, at: Across<V::Scalar>) -> Option<Corners<V::Scalar>> {
         let [e, f] = self.plane.across;
         let [p, q] = self.outline.corners[..] else { return None };
@@ -290,7 +290,7 @@ impl<'s, V: Vector> Side<'s, V> {
             if !(dot((x, y), way(at, next.at)) >= V::Scalar::ZERO) {
                 return None;
             }
-            // Counterclockwise, as the place is between these.
+            // Counterclockwise, because the place is between these.
             around = SmallVec::from_slice(&[around[(i + 1) % n], around[i], next]);
         }
         None
@@ -299,9 +299,9 @@ impl<'s, V: Vector> Side<'s, V> {
 
 type Corners<S> = SmallVec<[Corner<S>; 3]>;
 
-/// The height between the ends of a segment, or between the corners of a triangle, counterclockwise. A place that is
-/// beyond an edge by rounding has the height of the nearest point of the edges: the plane of a steep triangle is soon
-/// far from the shape there.
+/// The height between the ends of a segment, or between the corners of a triangle, counterclockwise. A place beyond an
+/// edge by rounding has the height of the nearest point of the edges: the plane of a steep triangle soon leaves the
+/// shape there.
 fn between<S: Scalar>(corners: &[Corner<S>], at: Across<S>) -> S {
     let to = |i: usize| way(at, corners[i].at);
     let of_edge = |i: usize, j: usize| {
@@ -322,16 +322,16 @@ fn between<S: Scalar>(corners: &[Corner<S>], at: Across<S>) -> S {
     (p + q + r) / (weights[0] + weights[1] + weights[2])
 }
 
-/// The area between two vectors, in twice the precision where the products cancel. The points around a place on a
-/// curved surface end as thin triangles, two of them next to one another and the third far away, and of such an area
-/// rounded products leave the digits that the rounding of the long sides is smaller than.
+/// The area between two vectors, in twice the precision if the products cancel. The points around a place on a curved
+/// surface end as thin triangles, two corners near one another and the third far away. Rounded products of such an area
+/// keep only the digits above the rounding of the long sides.
 fn spanned<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
     let (p, q) = (a.0 * b.1, a.1 * b.0);
     let cancels = (p - q).abs() * S::from_f64(16.0) < p.abs() + q.abs();
     if cancels { dot_minus([(a.0, b.1), (-a.1, b.0)], S::ZERO) } else { p - q }
 }
 
-/// Whether a point is behind another one, beyond a side of the shape that is so steep.
+/// Whether a point is behind another one, beyond a side of the shape steeper than [`STEEP`].
 fn is_hidden<S: Scalar>(low: &Corner<S>, high: &Corner<S>, noise: S) -> bool {
     let (e, rise) = (way(low.at, high.at), high.height - low.height);
     rise > noise && rise * rise > dot(e, e) * S::from_f64(STEEP * STEEP)
@@ -355,7 +355,7 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
         }
         return true;
     }
-    // The place may be that far on the other side, but not behind what is next, as where both sides lead the same way.
+    // The place may be beyond a side by rounding, but not behind the new point: both sides may lead the same way.
     let side = |corner: &Corner<S>| {
         let (e, to) = (way(next.at, corner.at), way(next.at, at));
         let allowed = spread(e) * noise;
@@ -365,13 +365,13 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
     for i in 0..3 {
         let (p, q) = (around[i], around[(i + 1) % 3]);
         let ((left, allowed, ahead), (right, as_well, too)) = (side(&p), side(&q));
-        // No plane is known by corners that are on a line but for rounding.
+        // Corners on a line, to rounding, determine no plane.
         let base = way(p.at, q.at);
         let is_known = cross(base, way(p.at, next.at)) > spread(base) * noise;
         if is_known && left >= -allowed && right <= as_well && (ahead || too) {
             let corners = SmallVec::from_buf([p, q, next]);
             let level = between(&corners, at);
-            // Where the place is at a corner there are two, and the one that leaves that corner out is higher.
+            // At a corner there are two planes, and the one without that corner is higher.
             if best.as_ref().is_none_or(|(known, _)| level > *known) {
                 best = Some((level, corners));
             }
@@ -386,8 +386,8 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
 mod tests {
     use super::*;
 
-    /// Two corners are next to one another, and the third is far away: the height between them is that of their plane
-    /// at any place among them.
+    /// Two corners are near one another, and the third is far away: the height between them is that of their plane at
+    /// any place among them.
     #[test]
     fn the_height_between_corners_of_a_thin_triangle_is_that_of_their_plane() {
         let plane = |(x, y): Across<f64>| 0.25 + 0.7 * x - 0.4 * y;
