@@ -14,16 +14,15 @@ use crate::simplex::MAX_POINTS;
 /// f_i = e_i − Σ_{j<i} c_ij·f_j,   c_ij = e_i·f_j / f_j·f_j.
 /// ```
 ///
-/// Every projection is done twice. After that it is orthogonal to rounding even where nearly everything cancels, so
-/// that a short vector from a far simplex keeps its direction; and only squares of lengths occur, no products of four.
+/// Every projection is done twice. Then it is orthogonal to rounding even if nearly everything cancels, so that a short
+/// vector from a far simplex keeps its direction. Only squares of lengths occur, no products of four.
 ///
-/// The order is for simplices with a side that zero is near to and a corner far away, as near contact. That corner's
-/// share of zero's foot is as small as the square of the distance, yet it turns the shortest vector. Being last, it is
-/// the one coordinate that nothing is subtracted from; from the far corner itself it would be one less the others, and
-/// lost.
+/// The order is for simplices with a side near zero and a corner far away, as near contact. That corner's coordinate of
+/// zero's foot is as small as the square of the distance, yet it turns the shortest vector. As the last, it is the one
+/// coordinate that nothing is subtracted from; seen from the far corner it would be one less the others, and lost.
 pub(crate) struct AffineHull<V: Vector, const EDGES: usize> {
     y: V,
-    /// The places of `y` and of the ends of the edges among the points.
+    /// The indices of `y` and of the ends of the edges among the points.
     order: [usize; MAX_POINTS],
     f: [V; EDGES],
     c: [[V::Scalar; EDGES]; EDGES],
@@ -34,14 +33,14 @@ pub(crate) struct AffineHull<V: Vector, const EDGES: usize> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection<V: Vector> {
     pub(crate) across: V,
-    /// The barycentric coordinates of the point that the vector was given from plus the part along the hull, in the
-    /// order that the points were given in.
+    /// The barycentric coordinates of the starting point of the vector plus the part along the hull, in the order of
+    /// the given points.
     pub(crate) coordinates: [V::Scalar; MAX_POINTS],
 }
 
-/// Splits the vector that `v` says, given a point of the affine hull of one to four points: the one nearest to zero.
+/// Splits the vector that `v` returns for a point of the affine hull of one to four points: the one nearest to zero.
 ///
-/// Coordinates are NaN or infinite where the points are affinely dependent.
+/// Coordinates are NaN or infinite if the points are affinely dependent.
 #[inline]
 pub(crate) fn project<V: Vector>(points: &[V], v: impl FnOnce(V) -> V) -> Projection<V> {
     match points.len() {
@@ -53,7 +52,7 @@ pub(crate) fn project<V: Vector>(points: &[V], v: impl FnOnce(V) -> V) -> Projec
 }
 
 impl<V: Vector, const EDGES: usize> AffineHull<V, EDGES> {
-    /// Of as many points as there are edges, and one more.
+    /// The hull of one more point than there are edges.
     #[inline(always)]
     pub(crate) fn new(points: &[V]) -> Self {
         let zero = V::Scalar::ZERO;
@@ -88,7 +87,7 @@ impl<V: Vector, const EDGES: usize> AffineHull<V, EDGES> {
         Self { y, order, f, c, squared }
     }
 
-    /// The least height of a segment or triangle: its length; twice its area over its longest edge. Zero of a point.
+    /// The least height of a segment or triangle: its length; twice its area over its longest edge. Zero for a point.
     pub(crate) fn width(&self) -> V::Scalar {
         let squared = |edge: usize| self.squared[edge];
         match EDGES {
@@ -96,7 +95,7 @@ impl<V: Vector, const EDGES: usize> AffineHull<V, EDGES> {
             1 => squared(0).sqrt(),
             _ => {
                 let (first, height) = (squared(0), squared(1));
-                // The second edge, and the one from the first's end to the second's, are this far along the first.
+                // How far the two other edges go along the first.
                 let share = self.c[1][0];
                 let beyond = share - V::Scalar::ONE;
                 let longest = first.max(height + first * share * share).max(height + first * beyond * beyond);
@@ -105,7 +104,7 @@ impl<V: Vector, const EDGES: usize> AffineHull<V, EDGES> {
         }
     }
 
-    /// Splits the vector that `v` says, given the point nearest to zero.
+    /// Splits the vector that `v` returns for the point nearest to zero.
     ///
     /// The coordinates follow from `v = Σ t_i·f_i + across` by back-substitution: with `v = Σ b_i·e_i + across`,
     /// `b_i = t_i − Σ_{k>i} b_k·c_ki`.

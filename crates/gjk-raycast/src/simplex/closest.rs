@@ -1,4 +1,4 @@
-//! The point of a simplex closest to zero, found by looking at every face.
+//! The point of a simplex closest to zero, by testing every face.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -9,23 +9,23 @@ use crate::simplex::{Face, MAX_POINTS, faces};
 /// The point of a simplex closest to zero.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Closest<V: Vector> {
-    /// The point; zero where the simplex has full dimension and contains it.
+    /// The point; zero if the simplex has full dimension and contains it.
     pub(crate) v: V,
     /// The smallest face that contains it.
     pub(crate) face: Face,
-    /// Its barycentric coordinates there, one for each corner of the face.
+    /// Its barycentric coordinates in the face, one for each corner.
     pub(crate) weights: [V::Scalar; MAX_POINTS],
 }
 
-/// The closest point found by looking at every face, and taking the nearest of those whose affine hull comes closest
-/// to zero within the face. `None` where no comparison holds, as with NaN.
+/// The closest point found by testing every face: the nearest of the points of affine hulls closest to zero that are
+/// within their face. `None` if no comparison holds, as with NaN.
 ///
-/// The points lie in a space of `dimension` dimensions: that of the vectors, or one less for points seen along a ray.
+/// The points lie in `dimension` dimensions: those of the vectors, or one less for points projected along a ray.
 ///
-/// A new support point brings the simplex nearer, if by less than rounding; so a face with the last point for a corner
-/// is preferred to one that without it is no nearer than that. Near contact the share that the last point has of zero's
-/// foot is as small as the square of the distance, and may be lost in rounding; it turns the plane all the same, so
-/// that a share of no less than minus a rounding counts as none.
+/// A new support point brings the simplex nearer, perhaps by less than rounding. So a face with the last point as a
+/// corner is preferred to one without it that is nearer by rounding at most. Near contact, the last point's coordinate
+/// of zero's foot is as small as the square of the distance and may be lost to rounding, yet it turns the plane. So a
+/// coordinate that is negative by a rounding counts as zero.
 pub(crate) fn nearest_face<V: Vector>(points: &[V], dimension: usize) -> Option<Closest<V>> {
     let newest = points.len().checked_sub(1)?;
     let longest = points.iter().map(|p| p.length_squared()).fold(V::Scalar::ZERO, V::Scalar::max).sqrt();
@@ -33,7 +33,7 @@ pub(crate) fn nearest_face<V: Vector>(points: &[V], dimension: usize) -> Option<
     let rounding = share * longest;
     let mut best = None;
     let mut least = V::Scalar::infinity();
-    // In the order of faces those without the newest point come first.
+    // The faces without the newest point come first.
     for face in faces(points.len(), dimension + 1) {
         let mut corners = [V::ZERO; MAX_POINTS];
         let foot = project(face.of(points, &mut corners), |corner| -corner);
@@ -41,7 +41,7 @@ pub(crate) fn nearest_face<V: Vector>(points: &[V], dimension: usize) -> Option<
         if !foot.coordinates[..face.len()].iter().all(|&b| b > least_share) {
             continue;
         }
-        // A simplex of full dimension leaves nothing across, or else it is flat, and what spans it is rounding.
+        // A simplex of full dimension leaves nothing across; otherwise it is flat, and only rounding spans it.
         let full = face.len() > dimension && foot.across.length() <= rounding;
         let v = if full { V::ZERO } else { -foot.across };
         let length = v.length();
@@ -72,8 +72,8 @@ mod tests {
 
     use super::*;
 
-    /// The newest point brings the simplex nearer, if by less than rounding: where faces are equally near, as those of
-    /// points in a row, one that it is a corner of is kept.
+    /// The newest point brings the simplex nearer, perhaps by less than rounding. Among equally near faces, as of
+    /// points in a row, one with this corner is kept.
     #[test]
     fn of_equally_near_faces_one_with_the_newest_point_is_kept() {
         let points = [DVec3::new(-1.0, 1.0, 0.0), DVec3::new(1.0, 1.0, 0.0), DVec3::Y];

@@ -1,5 +1,5 @@
-//! The simplex that iterations carry: up to four points of a core, each with what it is made of; and its point closest
-//! to zero.
+//! The simplex of the iterations: up to four points of a core, each with the points of the shapes that it comes from;
+//! and its point closest to zero.
 
 mod affine_hull;
 mod closest;
@@ -18,10 +18,10 @@ pub(crate) use closest::{Closest, nearest_face};
 pub(crate) use regions::{cross, nearest};
 pub use sub_algorithm::SubAlgorithm;
 
-/// As many points as a simplex in 3D can have.
+/// The largest number of points of a simplex, in 3D.
 pub(crate) const MAX_POINTS: usize = 4;
 
-/// Points of a convex set and what they came from, the newest last.
+/// Points of a convex set and the points that they come from, the newest last.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Simplex<V: Vector> {
     points: [V; MAX_POINTS],
@@ -44,7 +44,7 @@ impl<V: Vector> Simplex<V> {
     }
 
     pub(crate) fn points(&self) -> &[V] {
-        // Cannot panic, so that what is computed for an observer who does not look is not computed.
+        // Cannot panic, so that values for an observer that ignores them are not computed.
         &self.points[..self.len.min(MAX_POINTS)]
     }
 
@@ -61,12 +61,12 @@ impl<V: Vector> Simplex<V> {
         self.len += 1;
     }
 
-    /// Takes the newest point away.
+    /// Removes the newest point.
     pub(crate) fn pop(&mut self) {
         self.len = self.len.saturating_sub(1);
     }
 
-    /// Takes a point away; the others keep their order.
+    /// Removes a point; the others keep their order.
     pub(crate) fn remove(&mut self, index: usize) {
         self.points[index..self.len].rotate_left(1);
         self.along[index..self.len].rotate_left(1);
@@ -92,7 +92,7 @@ impl<V: Vector> Simplex<V> {
         let mut kept = 0;
         for i in 0..MAX_POINTS {
             if i < self.len && face.has(i) {
-                // Point i is not before the place it goes to, where it mostly is already.
+                // Point i does not come before its new place, where it mostly is already.
                 if kept != i {
                     self.points[kept] = self.points[i];
                     self.along[kept] = self.along[i];
@@ -104,7 +104,7 @@ impl<V: Vector> Simplex<V> {
         self.len = kept;
     }
 
-    /// The points in an array, of which the last ones may be no points, and the index of the newest.
+    /// The points in an array, whose last elements may be unused, and the index of the newest.
     #[inline]
     pub(crate) fn padded(&self) -> (&[V; MAX_POINTS], usize) {
         (&self.points, (self.len + MAX_POINTS - 1) % MAX_POINTS)
@@ -119,7 +119,7 @@ impl<V: Vector> Simplex<V> {
         sum
     }
 
-    /// What the weighted sum of the points is made of.
+    /// The weighted sum of the witnesses.
     pub(crate) fn weighted_witness(&self) -> PointPair<V> {
         self.weighted().fold(PointPair::default(), |sum, (weight, witness)| sum.plus(witness, weight))
     }
@@ -138,7 +138,7 @@ impl<V: Vector> Simplex<V> {
         &self.along[..self.len]
     }
 
-    /// What the points are made of.
+    /// The points of the shapes that the points come from.
     pub(crate) fn witnesses(&self) -> &[PointPair<V>] {
         &self.witnesses[..self.len]
     }
@@ -197,7 +197,7 @@ impl Face {
         usize::from(self.0)
     }
 
-    /// The face with point `index` for another corner.
+    /// The face with point `index` as another corner.
     pub(crate) fn with(self, index: usize) -> Self {
         Self(self.0 | 1 << index)
     }

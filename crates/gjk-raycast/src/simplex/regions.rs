@@ -1,4 +1,4 @@
-//! The point of a simplex closest to zero, looked for from its newest vertex.
+//! The point of a simplex closest to zero, searched from its newest vertex.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -9,19 +9,19 @@ use crate::simplex::{Face, MAX_POINTS};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearestFace<V> {
     pub(crate) face: Face,
-    /// A vector along the shortest one from zero to the face, of any length; zero where the simplex has full dimension
-    /// and contains zero for certain.
+    /// A vector along the shortest one from zero to the face, of any length; zero if the simplex has full dimension and
+    /// certainly contains zero.
     pub(crate) normal: V,
 }
 
-/// A simplex is taken for flat where its volume is less than this many rounding errors of the product of its edges.
+/// A simplex counts as flat if its volume is less than this many rounding errors of the product of its edges.
 const FLAT: f64 = 64.0;
 
-/// The face of a simplex closest to zero, if it has the newest point `y` for a corner and rounding leaves little doubt.
+/// The face of a simplex closest to zero, if it has the newest point `y` as a corner and rounding leaves little doubt.
 ///
 /// In GJK a support point is added because it is nearer to zero, along the shortest vector so far, than all the others,
-/// which are equally near. So the face looked for has it for a corner. With edges `e_i = y_i − y`, products
-/// `G_ij = e_i·e_j` and `g_i = −y·e_i`, zero's foot on a face is `y + Σ t_i·e_i` with
+/// which are equally near. So it is a corner of the nearest face. With edges `e_i = y_i − y`, products `G_ij = e_i·e_j`
+/// and `g_i = −y·e_i`, zero's foot on a face is `y + Σ t_i·e_i` with
 ///
 /// ```text
 /// edge i:       t_i = g_i / G_ii,
@@ -29,13 +29,13 @@ const FLAT: f64 = 64.0;
 /// all of 3D:    t_k = −y·n_k / det,   n_k = e_i × e_j,   det = e_k·n_k,
 /// ```
 ///
-/// and zero is in the region of a face where the `t` of the face are positive and those that each further corner would
-/// get are not. These are Johnson's determinants of the faces at `y`, as differences of points that are near to one
-/// another. In space a facet's normal comes from the cross product, right to rounding however near zero is; and so does
-/// that of an edge, by two projections.
+/// and zero is in the region of a face if the `t` of the face are positive and those of each further corner are not.
+/// These are Johnson's determinants of the faces at `y`, as differences of points that are near one another. In space a
+/// facet's normal comes from the cross product, right to rounding however near zero is; an edge's normal is equally
+/// accurate, by two projections.
 ///
-/// A wrong sign costs no more than a step: whatever face is found, the points of its plane are no farther than the
-/// caller measures them to be. Only that zero is within needs proof here. `None` where no region fits.
+/// A wrong sign costs no more than a step: the caller measures the distance of whatever face is found. Only that zero
+/// is inside needs proof here. `None` if no region fits.
 #[inline(always)]
 pub(crate) fn nearest<V: Vector>(points: &[V; MAX_POINTS], newest: usize, y: V) -> Option<NearestFace<V>> {
     match newest {
@@ -56,7 +56,7 @@ fn vertex<V: Vector>(newest: usize, y: V) -> NearestFace<V> {
 fn edge<V: Vector>(newest: usize, i: usize, y: V, e: V, squared: V::Scalar) -> NearestFace<V> {
     let per_square = squared.recip();
     let across = |v: V| v - e * (v.dot(e) * per_square);
-    // Twice, since the first projection leaves rounding errors of the length of y along e.
+    // Twice, because the first projection leaves rounding errors of the length of y along e.
     NearestFace { face: Face::of_corners(&[newest, i]), normal: across(across(y)) }
 }
 
@@ -82,7 +82,7 @@ fn of_triangle<V: Vector>(y: V, e: [V; 2]) -> Option<NearestFace<V>> {
             return None;
         }
         if V::DIM == 2 {
-            // In the plane the triangle is all there is; its r are areas squared.
+            // In the plane the triangle has full dimension; its r are areas squared.
             let doubt = flatness::<V>() * y.length_squared() * g00 * g11;
             let inside = determinant > flat && r0 * r0 > doubt * g11 && r1 * r1 > doubt * g00;
             return inside.then_some(NearestFace { face: Face::of_corners(&[0, 1, 2]), normal: V::ZERO });
@@ -107,7 +107,7 @@ fn of_tetrahedron<V: Vector>(y: V, e: [V; 3]) -> Option<NearestFace<V>> {
     let g = [-y.dot(e[0]), -y.dot(e[1]), -y.dot(e[2])];
     let n = [cross(e[1], e[2]), cross(e[2], e[0]), cross(e[0], e[1])];
     let det = e[0].dot(n[0]);
-    // With the sign of det, so that a positive one means inside.
+    // With the sign of det, so that positive means inside.
     let sign = V::Scalar::ONE.copysign(det);
     let s = [-y.dot(n[0]) * sign, -y.dot(n[1]) * sign, -y.dot(n[2]) * sign];
     if s[0] > zero && s[1] > zero && s[2] > zero {
@@ -119,11 +119,11 @@ fn of_tetrahedron<V: Vector>(y: V, e: [V; 3]) -> Option<NearestFace<V>> {
             && s[0] + s[1] + s[2] < det.abs();
         return inside.then_some(NearestFace { face: Face::of_corners(&[0, 1, 2, 3]), normal: V::ZERO });
     }
-    // r[i][j] for the facets in the order of n: what edge i leaves for the corner of edge j.
+    // r[i][j] for the facets in the order of n: the part across edge i for the corner of edge j.
     let (r01, r10) = (g[1] * squared[0] - g[0] * g01, g[0] * squared[1] - g[1] * g01);
     let (r12, r21) = (g[2] * squared[1] - g[1] * g12, g[1] * squared[2] - g[2] * g12);
     let (r20, r02) = (g[0] * squared[2] - g[2] * g20, g[2] * squared[0] - g[0] * g20);
-    // Where s is not positive, the normal that makes det positive points to the side of y.
+    // If s is not positive, the normal that makes det positive points to the side of y.
     let facet = |k: usize, i: usize, j: usize, r: V::Scalar| {
         let area = n[k].length_squared();
         (r < area && area > flatness::<V>() * squared[i] * squared[j])

@@ -10,11 +10,11 @@ use crate::simplex::{Face, MAX_POINTS, faces};
 /// The face of a simplex closest to zero, by the signs of volumes, areas and lengths.
 ///
 /// A face contains the foot of zero on its affine hull if replacing any corner by the foot leaves the sign of its
-/// volume. Where it does not, the answer lies in a face without such a corner. Volumes of faces that are not of full
-/// dimension are taken in their largest coordinate projection, so that every sign is that of a determinant of
-/// differences, and nothing is divided before the face is known.
+/// volume. Otherwise the closest point lies in a face without such a corner. Volumes of faces of lower dimension are
+/// taken in their largest coordinate projection, so that every sign is that of a determinant of differences, and
+/// nothing is divided before the face is known.
 ///
-/// Where rounding makes the signs inconsistent, the back-up is to look at every face for the nearest.
+/// If rounding makes the signs inconsistent, every face is tested for the nearest.
 ///
 /// # References
 /// Mattia Montanari, Nik Petrinic, Ettore Barbieri, *Improving the GJK algorithm for faster and more reliable distance
@@ -52,7 +52,7 @@ fn closest_below<V: Vector>(points: &[V], face: Face, dimension: usize) -> Optio
     best
 }
 
-/// The volume of a simplex and those with one corner replaced by zero's foot on its affine hull; up to a common factor.
+/// The volumes of a simplex, and with each corner replaced by zero's foot on its affine hull; up to a common factor.
 fn volumes<V: Vector>(corners: &[V]) -> (V::Scalar, [V::Scalar; MAX_POINTS]) {
     let n = corners.len() - 1;
     let foot = foot(corners);
