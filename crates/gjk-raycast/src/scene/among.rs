@@ -160,7 +160,7 @@ impl<'s, S: SupportMap> Among<'s, S> {
 
     /// Tests the half-spaces, and then the bodies whose bound may be below the limit, mostly in the order of their
     /// bounds. `ask` takes the bound and returns the next limit, with an index: a body at the limit counts if its index
-    /// is lower, since of equals the lowest index counts. A break or an error ends it.
+    /// is lower, because the lowest index counts among equals. A break or an error ends the search.
     pub(super) fn in_order<B: Bound<S::Vector>, E>(
         &self,
         bound: &B,
@@ -195,7 +195,7 @@ impl<'s, S: SupportMap> Among<'s, S> {
         self.without_pairs.is_some_and(|left_out| left_out(a, b))
     }
 
-    /// Whether to stop, which is recorded.
+    /// Whether to stop, which the work records.
     #[inline]
     pub(super) fn stops(&self, work: &mut Work) -> bool {
         work.cancelled |= self.until.is_some_and(|stop| stop());

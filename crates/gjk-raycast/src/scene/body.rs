@@ -145,7 +145,7 @@ impl<S: SupportMap> Body<S> {
     }
 }
 
-/// A motion in a moving frame: first the motion, and then the inverse of the frame's.
+/// A motion relative to a moving frame: first the motion, and then the inverse of the frame's.
 pub(super) fn seen_from<V: Vector>(
     RigidMotion { velocity, angular_velocity, center }: RigidMotion<V>,
     motion: RigidMotion<V>,

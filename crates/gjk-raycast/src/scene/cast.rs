@@ -242,15 +242,15 @@ impl<S: SupportMap> Among<'_, S> {
     /// The first hit of all bodies that `bound` does not leave out; `ask` makes the single cast.
     ///
     /// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, which is impossible if
-    /// the hit's bracket is closed. Keys, and all that is kept here, are minima over bodies. A body that its box left
-    /// out takes no part in them. So neither the order of the bodies matters, nor which others were tested.
+    /// the hit's bracket is closed. Keys, and all values kept here, are minima over bodies, without those that their
+    /// boxes left out. So neither the order of the bodies matters, nor which others were tested.
     fn first<H: Copy, B: Bound<S::Vector>>(
         &self,
         bound: &B,
         end: ScalarOf<S>,
         ask: impl Fn(&Body<S>) -> Result<SingleAnswer<H, ScalarOf<S>>, RayCastError>,
     ) -> Result<SceneCast<H, ScalarOf<S>>, RayCastError> {
-        // The least key, with the hit; and where an undecided body may be hit at the earliest, and which.
+        // The least key, with the hit; and the earliest possible hit of an undecided body, with its index.
         let (mut first, mut open) = (None::<(_, BodyHit<H, ScalarOf<S>>)>, None);
         let mut lower = ScalarOf::<S>::infinity();
         let work = self.in_order(bound, end, |index, from, body| {
@@ -287,7 +287,7 @@ struct SingleAnswer<H, S> {
 }
 
 impl<H, S: Scalar> SingleAnswer<H, S> {
-    /// The hit as that of a body.
+    /// The hit with the index of its body.
     fn of(self, body: usize) -> Option<BodyHit<H, S>> {
         let Self { hit, lower, upper, status, .. } = self;
         hit.map(|(_, hit)| BodyHit { body, hit, lower, upper, status })
@@ -308,13 +308,13 @@ impl<V: Vector> From<LinearCast<V>> for SingleAnswer<Impact<V>, V::Scalar> {
     }
 }
 
-/// A ray, with room for the rounding of its points: 32 ε of the source.
+/// The box of a ray, with room for the rounding of its points: 32 ε of the source.
 fn swept_point<V: Vector>(ray: Ray<V>) -> SweptBox<V> {
     let room = V::Scalar::from_f64(32.0) * V::Scalar::EPSILON * ray.source.abs().dot(V::ONE);
     SweptBox::new(V::splat(room), ray.source, ray.direction)
 }
 
-/// The box of a shape that moves, in the frame of the bodies, with room for the target distance.
+/// The box of a moving shape, in the frame of the bodies, with room for the target distance.
 fn swept_shape<A: SupportMap + ?Sized>(
     shape: &A,
     motion: Motion<A::Vector>,
@@ -324,7 +324,7 @@ fn swept_shape<A: SupportMap + ?Sized>(
     let room = A::Vector::splat(Float::max(options.target_distance, Scalar::ZERO));
     let around = Aabb { min: around.min - room, max: around.max + room };
     let (center, half) = (around.center(), around.half_extents());
-    // The two are rounded.
+    // Both are rounded.
     let room = (center.abs() + half) * (ScalarOf::<A>::from_f64(4.0) * ScalarOf::<A>::EPSILON);
     SweptBox::new(half + room, center, motion.velocity_a - motion.velocity_b)
 }

@@ -1,4 +1,4 @@
-//! How high boxes are above a half-space.
+//! The heights of boxes above a half-space.
 
 use convex_support::glam::Vec4;
 use convex_support::{Aabb, Bound, Boxes, CoarseBound, CoarseUnit, Frame, Scalar, Vector};
@@ -6,7 +6,7 @@ use num_traits::Float as _;
 
 use crate::HalfSpace;
 
-/// The distance of a box from a half-space, from below: that of its lowest corner.
+/// A lower bound on the distance of a box from a half-space: that of its lowest corner.
 pub(super) struct HeightBound<V: Vector> {
     /// The unit normal.
     normal: V,
@@ -34,12 +34,12 @@ impl<V: Vector> Bound<V> for HeightBound<V> {
             height += n * if n < V::Scalar::ZERO { around.max } else { around.min }.get(i);
         }
         let deflate = V::Scalar::ONE - V::Scalar::from_f64(8.0) * V::Scalar::EPSILON;
-        // A sum that overflows says nothing.
+        // A sum that overflows proves nothing.
         (height.max(V::Scalar::ZERO) * deflate).min(V::Scalar::max_value())
     }
 
-    /// In the frame of a tree, `x = o + ξ/k`, a height is `(n·ξ + k(n·o − c))/k`, of which the second part is one
-    /// number. Both bounds are sums, which rounding moves by a few ε of their terms.
+    /// In the frame of a tree, `x = o + ξ/k`, a height is `(n·ξ + k(n·o − c))/k`, whose second part is one number. Both
+    /// bounds are sums, which rounding moves by a few ε of their terms.
     fn coarse(&self, frame: &Frame<V>) -> CoarseHeight {
         let (unit, epsilon) = (frame.unit(), V::Scalar::EPSILON.as_f64());
         let (mut rest, mut terms) = (-self.offset.as_f64(), self.offset.as_f64().abs());
@@ -58,11 +58,11 @@ impl<V: Vector> Bound<V> for HeightBound<V> {
 
 /// A [`HeightBound`] in the frame of a tree.
 pub(super) struct CoarseHeight {
-    /// Coordinates that are not used are zero.
+    /// Unused coordinates are zero.
     normal: [Vec4; 3],
-    /// The side of a box that is nearest.
+    /// The nearest side of a box.
     nearest: [usize; 3],
-    /// What is the same for all boxes, from below.
+    /// The part that is the same for all boxes, rounded down.
     rest: f32,
     unit: CoarseUnit,
 }
@@ -75,7 +75,7 @@ impl CoarseBound for CoarseHeight {
             (height, terms) = (height + term, terms + term.abs());
         }
         height -= terms * (16.0 * f32::EPSILON);
-        // What is not a number says nothing.
+        // NaN proves nothing.
         Vec4::select(height.cmpgt(Vec4::ZERO), height.min(Vec4::MAX), Vec4::ZERO)
     }
 

@@ -1,4 +1,4 @@
-//! A moving shape within balls, one after the other.
+//! A moving shape within successive balls.
 
 use convex_support::glam::Vec4;
 use convex_support::{
@@ -13,16 +13,16 @@ use crate::{MotionCastOptions, MovingBall, Trajectory};
 /// The most parts that a motion is cut into.
 const MAX_PARTS: usize = 16;
 
-/// How much larger than the ball of the shape the ball of a part may be, before the motion is cut into more parts.
+/// How much larger than the ball of the shape that of a part may be before the motion is cut into more parts.
 const GROWTH: f64 = 1.5;
 
-/// When a shape may meet a box, from below: when the first of the balls does that contain it during the motion, and
-/// everything no farther from it than the target distance.
+/// A lower bound on the time when a shape may meet a box: when the first of the balls does that contain the moving
+/// shape, and all points no farther from it than the target distance.
 pub(super) struct MovingBalls<V: Vector>(SmallVec<[MovingBox<V>; MAX_PARTS]>);
 
 impl<V: Vector> MovingBalls<V> {
-    /// The motion is cut into as few parts as make their balls, which move at constant velocity, hardly larger than
-    /// that of the shape. A motion without an end is one part. The options are checked.
+    /// Cuts the motion into as few parts as make their balls, which move at constant velocity, hardly larger than that
+    /// of the shape. An endless motion is one part. The options have been checked.
     pub(super) fn new<A: SupportMap<Vector = V> + ?Sized>(
         shape: &A,
         motion: &impl Trajectory<Vector = V>,
@@ -54,7 +54,7 @@ impl<V: Vector> MovingBalls<V> {
     }
 }
 
-/// The box around a moving ball, when it begins to move, and how long it does, rounded up.
+/// The box around a moving ball, the time when it begins to move, and its duration, rounded up.
 struct MovingBox<V: Vector> {
     start: V::Scalar,
     duration: V::Scalar,
@@ -62,7 +62,7 @@ struct MovingBox<V: Vector> {
 }
 
 impl<V: Vector> MovingBox<V> {
-    /// With room for the rounding of where the ball is.
+    /// The box, with room for the rounding of the ball's position.
     fn new(start: V::Scalar, duration: V::Scalar, ball: MovingBall<V>) -> Self {
         let number = V::Scalar::from_f64;
         let within = ball.start.abs() + V::splat(ball.radius);
@@ -71,7 +71,7 @@ impl<V: Vector> MovingBox<V> {
             let way = if speed == Scalar::ZERO { speed } else { speed * duration };
             ball.start.get(i).abs() + way + ball.radius
         });
-        // What moves for ever is as far as it is asked about.
+        // An endless motion counts with its start alone.
         let reach = if reach.is_finite() { reach } else { within };
         let room = number(64.0) * V::Scalar::EPSILON * reach.max_element();
         let swept = SweptBox::new(V::splat(ball.radius + room), ball.start, ball.velocity);
@@ -83,7 +83,7 @@ impl<V: Vector> Bound<V> for MovingBalls<V> {
     type Coarse = CoarseMovingBalls<V>;
 
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
-        // What the sum of a part's start and the time in it loses.
+        // The rounding of the sum of a part's start and the time in it.
         let deflate = V::Scalar::ONE - V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;
         self.0.iter().fold(V::Scalar::infinity(), |first, part| {
             let after = part.swept.bound(around);
@@ -94,12 +94,12 @@ impl<V: Vector> Bound<V> for MovingBalls<V> {
     fn coarse(&self, frame: &Frame<V>) -> CoarseMovingBalls<V> {
         let coarse = |part: &MovingBox<V>| {
             let swept = part.swept.coarse(frame);
-            // Without an end it ends where all numbers do.
+            // An endless part ends at the largest number.
             let duration = swept.limit(part.duration.as_f64());
             CoarseMovingBox { start: 0.0, duration, per_part: 1.0, swept }
         };
         let mut balls: SmallVec<[_; MAX_PARTS]> = self.0.iter().map(coarse).collect();
-        // All in the finest unit of time.
+        // All parts use the finest unit of time.
         let per_unit = balls.iter().map(|ball| ball.swept.unit().per_unit()).fold(0.0, f64::max).min(f64::MAX);
         for (ball, part) in balls.iter_mut().zip(&self.0) {
             ball.start = CoarseUnit::down(part.start.as_f64() * per_unit).max(0.0);

@@ -20,8 +20,8 @@ impl<S: SupportMap> Among<'_, S> {
         shape: &A,
         options: DistanceOptions<S::Vector>,
     ) -> SceneDistance<S::Vector> {
-        // What is certainly farther than the nearest need not be known closely; and a body is as far as its box at
-        // least, so that, as for casts, it counts from its distance or from where its box begins, whichever is farther.
+        // A body that is certainly farther than the nearest needs no close bounds. A body is at least as far as its
+        // box, so that, as for casts, it counts from its distance or from where its box begins, whichever is farther.
         let (mut nearest, mut limit, mut lower) = (None, (options.limit, usize::MAX), options.limit);
         let Ok(work) = self.in_order(&distance_of(shape), options.limit, |index, from, body| {
             let distance = body.distance_from(shape, options.with_limit(limit.0));
@@ -59,7 +59,7 @@ impl<S: SupportMap> Among<'_, S> {
         bodies: &mut Vec<BodyDistance<S::Vector>>,
     ) -> Work {
         let bodies = reuse(bodies);
-        // What each of them counts from.
+        // The keys of the bodies found.
         let (mut keys, mut limit) = (Vec::new(), (options.limit, usize::MAX));
         let Ok(work) = self.in_order(&distance_of(shape), options.limit, |index, from, body| {
             let distance = body.distance_from(shape, options.with_limit(limit.0));
@@ -104,7 +104,7 @@ impl<S: SupportMap> Among<'_, S> {
         let (mut least, mut key, mut lower) = (None, (end, usize::MAX), end);
         let Ok(work) = self.in_order(&distance_of(shape), end, |index, from, body| {
             let distance = body.signed_distance(shape, options.with_limit(Float::max(key.0, zero)));
-            // Bodies are as far apart as their boxes at least; of those whose boxes meet, nothing is known before.
+            // Bodies are at least as far apart as their boxes; boxes that meet give no bound.
             let at_least = |value| if from > zero { Float::max(value, from) } else { value };
             lower = Float::min(lower, at_least(distance.lower));
             let next = (at_least(distance.signed_distance), index);
@@ -135,8 +135,8 @@ impl<S: SupportMap> Among<'_, S> {
         work
     }
 
-    /// Collects the results of `tell` for the bodies whose boxes are no farther than `within` from that of the shape,
-    /// in no order.
+    /// Collects the results of `tell`, in no order, for the bodies whose boxes are no farther than `within` from that
+    /// of the shape.
     pub(super) fn near<A: SupportMap<Vector = S::Vector> + ?Sized, R>(
         &self,
         shape: &A,

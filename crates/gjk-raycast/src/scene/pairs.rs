@@ -64,7 +64,7 @@ impl<S: SupportMap> Among<'_, S> {
         asking.finish()
     }
 
-    /// The same for pairs of one of these bodies and one of another scene.
+    /// Collects them for pairs of one of these bodies and one of another scene.
     pub(super) fn find_pairs_between<T: SupportMap<Vector = S::Vector>, P: OfPair>(
         &self,
         other: &Scene<T>,
@@ -90,7 +90,7 @@ impl<S: SupportMap> Among<'_, S> {
         S: Sync,
     {
         use rayon::prelude::*;
-        // Enough that threads which are done find another, and not so many that they wait for each other.
+        // Enough that idle threads find another piece, and few enough that they do not wait for each other.
         const PIECES: usize = 256;
         let (a, b, same) = (*self, *self, true);
         let pieces = self.scene.tree.pairs_within(within).split(PIECES);
@@ -132,7 +132,7 @@ impl<V: Vector> OfPair for PairContact<V> {
     }
 }
 
-/// A search for pairs under way.
+/// A running search for pairs.
 struct Asking<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>, F, P> {
     a: Among<'s, S>,
     b: Among<'s, T>,

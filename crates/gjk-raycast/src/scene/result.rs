@@ -206,7 +206,7 @@ pub struct PairContact<V: Vector> {
     pub contact: Contact<V>,
 }
 
-/// Empties a list of the caller, and keeps its memory.
+/// Empties a list of the caller and keeps its memory.
 pub(super) fn reuse<T>(list: &mut Vec<T>) -> &mut Vec<T> {
     list.clear();
     list

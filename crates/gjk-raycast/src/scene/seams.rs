@@ -71,14 +71,14 @@ impl<S: SupportMap> Scene<S> {
         })
     }
 
-    /// Whether all points of a contact, on its second body, are covered by one of the others.
+    /// Whether one of the others covers each point of a contact on its second body.
     fn is_at_seam<I: Iterator<Item = usize>>(&self, contact: &Contact<S::Vector>, others: impl Fn() -> I) -> bool {
         let covers = |point, other| self.reaches_beyond(other, point, contact.normal);
         contact.points().iter().all(|point| others().any(|other| covers(point.point_b, other)))
     }
 
-    /// Whether a point is one of a convex body, but for the root of rounding, and the body extends beyond it along a
-    /// unit vector.
+    /// Whether a point is one of a convex body, to the root of rounding, and the body extends beyond it along a unit
+    /// vector.
     fn reaches_beyond(&self, body: usize, point: S::Vector, normal: S::Vector) -> bool {
         let Some(body) = self.get(body).and_then(|body| body.convex()) else { return false };
         let core = body.core();
@@ -90,7 +90,7 @@ impl<S: SupportMap> Scene<S> {
     }
 }
 
-/// Removes contacts one after the other, each by the remaining ones, and returns their number.
+/// Removes contacts one by one, each tested against the remaining ones, and returns their number.
 fn leave_out<C>(contacts: &mut Vec<C>, is_left_out: impl Fn(&[C], &C) -> bool) -> usize {
     let before = contacts.len();
     let mut i = 0;
