@@ -27,14 +27,14 @@ impl<V: Vector> HalfSpace<V> {
         let begin = options.min_lambda.max(zero);
         let (height, sinking) = if begin > zero {
             let way = ray.direction * begin;
-            // The product is rounded, coordinate by coordinate.
+            // The product is rounded in each coordinate.
             let rounded = plane.per_length(roundings(2.0, plane.normal().abs().dot(way.abs())));
             (plane.height([ray.source, way], rounded, zero), plane.sinking([ray.direction]))
         } else {
             (plane.height([ray.source], zero, zero), plane.sinking([ray.direction]))
         };
         let Landing { outcome, lower, upper, status } = plane.crossing(height, sinking, options.max_lambda - begin);
-        // What the sums lose.
+        // The rounding of the sums.
         let from_source = |lambda, count| begin + lambda + roundings(count, begin + lambda);
         let is_at_once = begin <= zero;
         let outcome = outcome.map(|time| {
@@ -76,7 +76,7 @@ impl<V: Vector> HalfSpace<V> {
         let Landing { outcome, lower, upper, status } = plane.crossing(height, sinking, options.max_time);
         let has_normal = height.most() >= zero || goes_deeper;
         let outcome = outcome.map(|time| {
-            // Of a target distance, the point of the half-space below.
+            // With a target distance, the point of the half-space below.
             let point = point + motion.velocity_a * time;
             Impact { time, point, normal: (time > zero || has_normal).then_some(plane.unit) }
         });
@@ -84,7 +84,7 @@ impl<V: Vector> HalfSpace<V> {
     }
 }
 
-/// The time at which a sinking point comes to the plane, with bounds, counted from zero.
+/// The time at which a sinking point reaches the plane, with bounds, counted from zero.
 pub(super) struct Landing<V: Vector> {
     pub(super) outcome: Outcome<V::Scalar, V>,
     pub(super) lower: V::Scalar,
@@ -134,7 +134,7 @@ impl<V: Vector> Plane<V> {
         if !(sinking.least() > zero) {
             return undecided(lower);
         }
-        // Whether a hit at the very end counts is decided by the time as it is returned.
+        // Whether a hit at the very end counts is decided by the returned time.
         let time = height.value / sinking.value;
         if !(time <= end) {
             return Landing { lower, ..miss };

@@ -1,4 +1,4 @@
-//! How high points are over a plane, to one rounding of that.
+//! The heights of points over a plane, each accurate to one rounding of itself.
 
 use convex_support::numerics::bound::{least, raised, roundings};
 use convex_support::numerics::twofold::{two_product, two_sum};
@@ -9,8 +9,8 @@ use super::HalfSpace;
 use crate::level::Level;
 use crate::unit::{power_of_two_near, reciprocal_of_power};
 
-/// The plane of a half-space. Its normal and offset are in units of a power of two near the normal's length, and so as
-/// they were given.
+/// The plane of a half-space. Its normal and offset are those given, in units of a power of two near the normal's
+/// length, and so exact.
 #[derive(Clone, Debug)]
 pub(crate) struct Plane<V: Vector> {
     normal: V,
@@ -27,7 +27,7 @@ pub(super) struct Lowest<V: Vector> {
 }
 
 impl<V: Vector> HalfSpace<V> {
-    /// The plane that ends it.
+    /// The plane that bounds it.
     pub(crate) fn plane(&self) -> Plane<V> {
         let per_unit = reciprocal_of_power(power_of_two_near(self.length));
         let (normal, length) = (self.normal * per_unit, self.length * per_unit);
@@ -36,7 +36,7 @@ impl<V: Vector> HalfSpace<V> {
 }
 
 impl<V: Vector> Plane<V> {
-    /// How high the lowest point of a shape is that is swept by a further ball.
+    /// The height of the lowest point of a shape swept by a further ball.
     pub(super) fn lowest<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A, swept: V::Scalar) -> Lowest<V> {
         let Core { origin, radius, .. } = shape.core();
         let radius = radius + swept;
@@ -45,7 +45,7 @@ impl<V: Vector> Plane<V> {
         Lowest { height, point: origin + point - self.unit * radius }
     }
 
-    /// How high the sum of some vectors is, less a radius, where that sum is wrong by `error` along the normal.
+    /// The height of the sum of some vectors, less a radius; the sum has an `error` along the normal.
     pub(crate) fn height<const N: usize>(
         &self,
         terms: [V; N],
@@ -53,22 +53,22 @@ impl<V: Vector> Plane<V> {
         radius: V::Scalar,
     ) -> Level<V::Scalar> {
         let Level { value, error: rounded } = self.level(terms, self.offset);
-        // The radius, its own sum and the difference.
+        // The rounding of the radius, of its sum and of the difference.
         Level { value: value - radius, error: raised(rounded + error + roundings(4.0, radius)) }
     }
 
-    /// How fast something sinks whose velocity is the sum of some vectors.
+    /// The sinking speed of a point whose velocity is the sum of some vectors.
     pub(crate) fn sinking<const N: usize>(&self, velocities: [V; N]) -> Level<V::Scalar> {
         let Level { value, error } = self.level(velocities, V::Scalar::ZERO);
         Level { value: -value, error }
     }
 
-    /// How far support points are off along the normal.
+    /// The error of support points along the normal.
     pub(crate) fn error_along(&self, rounding: &Rounding<V>) -> V::Scalar {
         Float::min(self.normal.abs().dot(rounding.error) / self.length, rounding.error_length)
     }
 
-    /// An upper bound of a length along the normal, given along a normal of [the same length](Self::normal).
+    /// An upper bound of a length along the unit normal, from one along the [normal](Self::normal).
     pub(crate) fn per_length(&self, along: V::Scalar) -> V::Scalar {
         along / self.length
     }
@@ -78,11 +78,11 @@ impl<V: Vector> Plane<V> {
         self.normal
     }
 
-    /// `(n·Σ terms − subtracted)/|n|`, by one sum of products in twice the precision. Where nothing is rounded there is
-    /// no error, so that what moves along the plane is known to.
+    /// `(n·Σ terms − subtracted)/|n|`, by one sum of products in twice the precision. If nothing is rounded the error
+    /// is zero, so that a motion along the plane is recognized.
     ///
-    /// With what `k` products and sums have lost, `lᵢ`, the sum is wrong by no more than `(k + 1)·ε·Σ |lᵢ|` and its own
-    /// rounding. The length and the quotient lose another eight halves of ε.
+    /// With the parts `lᵢ` lost in `k` products and sums, the sum is wrong by no more than `(k + 1)·ε·Σ |lᵢ|` and its
+    /// own rounding. The length and the quotient lose another eight halves of ε.
     fn level<const N: usize>(&self, terms: [V; N], subtracted: V::Scalar) -> Level<V::Scalar> {
         let zero = V::Scalar::ZERO;
         let (mut sum, mut lost, mut magnitude, mut tiny) = (-subtracted, zero, zero, zero);
@@ -95,7 +95,7 @@ impl<V: Vector> Plane<V> {
                 sum = next;
                 lost += lost_in_product + lost_in_sum;
                 magnitude += lost_in_product.abs() + lost_in_sum.abs();
-                // What is lost is subnormal itself.
+                // The lost part is itself subnormal.
                 if product.abs() < subnormal && n != zero && x != zero {
                     tiny += least();
                 }
@@ -114,7 +114,7 @@ mod tests {
 
     use super::Plane;
 
-    /// The offset and the products cancel but for a millionth; what is left is known to a rounding of that.
+    /// The offset and the products cancel to a millionth; the rest is accurate to one rounding of itself.
     #[test]
     fn a_height_is_wrong_by_no_more_than_its_error() {
         let normal = Vec3::new(0.6, -0.48, 0.64);
