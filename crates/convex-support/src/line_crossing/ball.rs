@@ -23,7 +23,7 @@ pub(crate) fn ball<V: Vector>(radius: V::Scalar, source: V, direction: V) -> Cro
 pub(super) fn chord<V: Vector>(radius: V::Scalar, source: V, direction: V, recip: V::Scalar) -> Chord<V> {
     let first = -source.dot(direction) * recip;
     let near = source + direction * first;
-    // As in `rebased`, but the second step does not need the point it leads to: by Pythagoras it is nearer by the step.
+    // As in `rebased`, but the second step needs no point: by Pythagoras it is nearer by the step.
     let along = near.dot(direction);
     let second = -along * recip;
     let inside = radius * radius - (near.length_squared() + along * second);

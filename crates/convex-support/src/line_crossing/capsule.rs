@@ -30,7 +30,7 @@ impl<V: Vector> Spine<V> {
         Self { middle: a + to_b, axis, half_height: to_b.norm(), is_upright: false }
     }
 
-    /// A point as it is seen from the middle.
+    /// A point relative to the middle.
     #[inline(always)]
     pub(super) fn seen(&self, point: V) -> V {
         if self.is_upright { point } else { point - self.middle }
@@ -44,8 +44,8 @@ impl<V: Vector> Spine<V> {
         }
         let along = v.dot(self.axis);
         let out = v - self.axis * along;
-        // Once more, since what is across may be small beside what was subtracted: of a line nearly along the axis,
-        // where it leaves the side is the difference of two large numbers.
+        // Once more, because the part across may be small against the subtracted one: for a line nearly along the axis,
+        // the place where it leaves the side is the difference of two large numbers.
         (along, out - self.axis * out.dot(self.axis))
     }
 
@@ -63,11 +63,11 @@ impl<V: Vector> Spine<V> {
 /// A vector and its parts along and across an axis.
 type Split<V> = (V, (<V as Vector>::Scalar, V));
 
-/// The crossing of the segment between `±half_height·axis`, swept by a ball; `axis` is a unit vector, and `source` the
-/// point of the line nearest the middle; `recip` is `1/|direction|²`.
+/// The crossing of the segment between `±half_height·axis`, swept by a ball; `axis` is a unit vector, `source` the
+/// point of the line nearest the middle, and `recip` is `1/|direction|²`.
 ///
-/// A line enters the infinite cylinder about the axis through the side, which is then where it enters the capsule, or
-/// beyond one of the ends, and then it has to pass through the ball at that end; likewise where it leaves.
+/// A line enters the infinite cylinder about the axis through the side of the capsule, which is then its entry, or
+/// beyond one of the ends, and then it can enter only through the ball at that end. The same holds where it leaves.
 #[inline(always)]
 fn capsule<V: Vector>(
     axis: V,
@@ -80,12 +80,12 @@ fn capsule<V: Vector>(
     let slope = across.length_squared();
     let per_slope = slope.recip();
     let middle = -out.dot(across) * per_slope;
-    // In the plane a line meets the axis itself, also where rounding says that it passes it at some distance.
+    // In the plane a line meets the axis itself, even if by rounding it passes at some distance.
     let nearest = if V::DIM == 2 { V::ZERO } else { out + across * middle };
     let side = Chord::about(middle, nearest, per_slope, radius);
     let (mut entry, mut exit) = side.ends();
     let (mut enters, mut leaves) = (along + rise * entry, along + rise * exit);
-    // A direction that is along the axis to rounding meets the side nowhere near.
+    // A direction that is along the axis to rounding meets the side only far away.
     if slope * recip <= V::Scalar::EPSILON * V::Scalar::EPSILON {
         if out.length_squared() > radius * radius {
             return Err(out);
@@ -112,6 +112,6 @@ fn capsule<V: Vector>(
     if !(leaves.abs() <= half_height) {
         exit = cap(leaves).ends().1;
     }
-    // The balls at both ends are met within rounding, or not, together.
+    // By rounding the exit may be NaN or before the entry.
     Ok(Crossing { entry, exit: if exit > entry { exit } else { entry }, normal })
 }

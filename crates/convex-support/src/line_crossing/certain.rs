@@ -44,7 +44,7 @@ impl<V: Vector> LineQuery<V> {
     #[inline(always)]
     #[must_use]
     pub fn seen_from(self, [origin, at]: [V; 2]) -> Self {
-        // Mostly the second is zero, and nothing is lost.
+        // Mostly the second is zero, and the sum is exact.
         let point = origin + at;
         let lost = lost_in_sum(origin, at).norm() + lost_in_sum(self.source, -point).norm();
         Self { source: self.source - point, ..self.within(lost) }
@@ -61,7 +61,7 @@ impl<V: Vector> LineQuery<V> {
     #[inline(always)]
     #[must_use]
     pub fn sweeping(self, radius: V::Scalar) -> Self {
-        // Nothing is lost, and nothing to be computed where that is known beforehand, as it mostly is.
+        // A zero radius, mostly known at compile time, needs no arithmetic and adds no rounding.
         if self.radius == V::Scalar::ZERO {
             return Self { radius, ..self };
         }
@@ -111,28 +111,27 @@ const OF_SIZE: f64 = 6.0;
 
 /// The further error of a line that is taken from its foot and then turned, in units of ε times the size.
 ///
-/// The foot loses `3uD + 2uS`. That is no more than 2 sizes from the origin where it matters, and one for a hit, which
-/// is within a size from there: the products with a rotation lose `3√3u` of both lengths, and those with the semi-axes
-/// of an ellipsoid `2u`, in all `15uS`; and to its ball `13uS`.
+/// The foot loses `3uD + 2uS`. If it matters, it is no more than 2 sizes from the origin, and one for a hit, which is
+/// within a size from there: the products with a rotation lose `3√3u` of both lengths, and those with the semi-axes of
+/// an ellipsoid `2u`, in all `15uS`; and to its ball `13uS`.
 const OF_TURN: f64 = 11.0;
 
 /// The further error of a line that is split along the axis of a segment, in units of ε times the size.
 ///
-/// The ends are seen from the origin to `2u` of the size `S`, the middle and the line from there to `2uS`, half the
-/// length to `2uS`; the axis is wrong by `4u`, which is as if the segment were turned by so much. Of a vector the part
-/// along the axis loses `7u` of its length, and the part across `3u`, beside what is along the axis and counts squared.
-/// Where a line hits, its foot and the way from there to the hit are no longer than the size. In all `26u`.
+/// Relative to the origin the ends have errors of `2u` of the size `S`, the middle and the line from there `2uS`, and
+/// half the length `2uS`. The axis is wrong by `4u`, as if the segment were turned by so much. The part of a vector
+/// along the axis loses `7u` of its length, and the part across `3u`, beside an error along the axis, which counts
+/// squared. At a hit, the foot and the way from there are no longer than the size. In all `26u`.
 const OF_SPLIT: f64 = 16.0;
 
-/// How many errors long a bracket is at most along a line; one that would be longer is looked at [more
-/// closely](super::closely).
+/// The largest length of a bracket along a line, in errors; a longer one is computed [more closely](super::closely).
 const WIDE: f64 = 1024.0;
 
-/// The square of the sine of the angle with a cylinder's side below which a line is nearly along it, and looked at
-/// more closely.
+/// The square of the sine of the angle with a cylinder's side below which a line counts as nearly along it, and is
+/// computed more closely.
 const ALONG: f64 = 1.0 / (WIDE * WIDE);
 
-/// A line that is near a shape: as it is seen from the shape's origin, from a point at most [`NEAR`] sizes away.
+/// A line near a shape, relative to the shape's origin, from a point at most [`NEAR`] sizes away.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearLine<V: Vector> {
     /// The parameter of that point.
@@ -145,23 +144,23 @@ pub(crate) struct NearLine<V: Vector> {
     pub(crate) error: V::Scalar,
 }
 
-/// Of a line that enters the infinite cylinder about a capsule beyond one of its ends.
+/// A line that enters the infinite cylinder about a capsule beyond one of its ends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BeyondEnd<S> {
-    /// Which, ±1.
+    /// The end, ±1.
     pub(super) end: S,
-    /// How far along the axis the line's nearest point to the middle is, and its parameter.
+    /// The coordinate along the axis of the line's point nearest the middle, and its parameter.
     pub(super) along: S,
     pub(super) base: S,
 }
 
 impl<S: Scalar> BeyondEnd<S> {
-    /// Of a line that is beyond neither.
+    /// A line that is beyond neither end.
     pub(super) const NEITHER: Self = Self { end: S::ZERO, along: S::ZERO, base: S::ZERO };
 }
 
 impl<V: Vector> CertainCrossing<V> {
-    /// The same with its normal, or the vector along which the line is apart, mapped.
+    /// The answer with its normal, or the vector along which the line is apart, mapped.
     #[inline(always)]
     pub fn with_normal(self, normal: impl FnOnce(V) -> V) -> Self {
         match self {
@@ -172,8 +171,8 @@ impl<V: Vector> CertainCrossing<V> {
 }
 
 impl<V: Vector> NearLine<V> {
-    /// The line, and a shape of a `size` about an `origin`. `None` where it passes far from there, or where numbers
-    /// are too small or large to be squared.
+    /// The line near a shape of a `size` about an `origin`. `None` if it passes far from there, or if numbers are too
+    /// small or large to be squared.
     #[inline(always)]
     pub(crate) fn new(line: LineQuery<V>, origin: V, size: V::Scalar) -> Option<Self> {
         let (near, is_near) = Self::seen::<false>(line, origin, size);
@@ -184,8 +183,8 @@ impl<V: Vector> NearLine<V> {
         if is_near { Some(near) } else { None }
     }
 
-    /// The line without a branch, and whether it is [near](Self::new). Where `FAR` is not set, only a line is near
-    /// whose source is.
+    /// The line without a branch, and whether it is [near](Self::new). Unless `FAR` is set, a line is near only if its
+    /// source is.
     #[inline(always)]
     pub(super) fn seen<const FAR: bool>(line: LineQuery<V>, origin: V, size: V::Scalar) -> (Self, bool) {
         let LineQuery { source, direction, error, .. } = line;
@@ -209,7 +208,7 @@ impl<V: Vector> NearLine<V> {
         (Self { base, source, direction, size, error: error + rounding }, is_near)
     }
 
-    /// The same line from where it is closest to the origin, to be turned.
+    /// The same line from its point nearest the origin, to be turned.
     #[inline(always)]
     pub(crate) fn at_foot(&self) -> Self {
         let Self { source, direction, size, .. } = *self;
@@ -218,7 +217,7 @@ impl<V: Vector> NearLine<V> {
         Self { base: self.base + base, source, error, ..*self }
     }
 
-    /// What is known there, of the shape as it was mapped and this line.
+    /// An answer for the mapped shape and this line, mapped back.
     #[inline(always)]
     pub(crate) fn after(&self, known: CertainCrossing<V>, normal: impl FnOnce(V) -> V) -> CertainCrossing<V> {
         match known.with_normal(normal) {
@@ -272,7 +271,7 @@ impl<V: Vector> NearLine<V> {
             return Some(self.enters([earliest, entry, latest], normal));
         }
         let leaves = least(leaves_late);
-        // One slab is left before the other is entered: seen along both of them, the line passes a rectangle.
+        // The line leaves one slab before it enters the other: projected along both of them, it passes a rectangle.
         let axes = || [axis_of(enters_early, earliest), axis_of(leaves_late, leaves)];
         (earliest > leaves).then(|| CertainCrossing::Misses(across_two_axes(axes(), source, direction)))
     }
@@ -338,13 +337,13 @@ impl<V: Vector> NearLine<V> {
         self.swept(radius, |x| x.max(-h).min(h), |d| d.abs().dot(h), crossed, self.longest_slack())
     }
 
-    /// How far the bounds may be apart along the line.
+    /// The largest distance of the bounds along the line.
     #[inline(always)]
     pub(super) fn longest_slack(&self) -> V::Scalar {
         self.error * V::Scalar::from_f64(WIDE) / self.direction.abs().max_element()
     }
 
-    /// The line as it is seen from the middle of a segment.
+    /// The line relative to the middle of a segment.
     #[inline(always)]
     fn seen_along(&self, spine: &Spine<V>) -> Self {
         if spine.is_upright {
@@ -354,7 +353,7 @@ impl<V: Vector> NearLine<V> {
         Self { source: self.source - spine.middle, error, ..*self }
     }
 
-    /// A segment about zero, swept by a ball. `None` too where the line passes near a rim.
+    /// A segment about zero, swept by a ball. `None` also if the line passes near a rim.
     #[inline(always)]
     fn capsule(&self, spine: &Spine<V>, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         match self.side(spine, radius) {
@@ -363,11 +362,11 @@ impl<V: Vector> NearLine<V> {
         }
     }
 
-    /// The side of that, or beyond which end the line enters the infinite cylinder.
+    /// The side of the capsule, or the end beyond which the line enters the infinite cylinder.
     ///
-    /// The capsule is within that cylinder, and contains the ball at each end. So where the line enters the side
-    /// between the ends, the slack of the side's chord is certain before the entry, and behind it as well if that point
-    /// is between the ends by more than the error.
+    /// The capsule is within that cylinder, and contains the ball at each end. So if the line enters the side between
+    /// the ends, the slack of the side's chord is certain before the entry. It is also certain behind the entry if the
+    /// point there is between the ends by more than the error.
     #[inline(always)]
     pub(super) fn side(
         &self,
@@ -404,11 +403,11 @@ impl<V: Vector> NearLine<V> {
         Err((height.abs() >= half_height + error).then_some(BeyondEnd { end, along, base }))
     }
 
-    /// The ball at the end beyond which the line enters the infinite cylinder: it reaches the rest of the capsule
-    /// through that ball alone.
+    /// The ball at the end beyond which the line enters the infinite cylinder: it enters the capsule through that ball
+    /// alone.
     ///
     /// Beyond the end, which is then the closest point of the segment, the slack of the ball's chord is certain, if the
-    /// point before the entry is there by more than the error. And where the line passes the ball, the plane across the
+    /// point before the entry is there by more than the error. And if the line passes the ball, the plane across the
     /// nearest point has the other end behind it, too, if that point is beyond the end.
     #[inline(always)]
     pub(super) fn end(
@@ -432,11 +431,11 @@ impl<V: Vector> NearLine<V> {
             .then(|| self.enters([entry - slack, entry, entry + slack], ball.normal(radius, direction, recip)))
     }
 
-    /// A set about zero, swept by a ball, whose crossing has a closed form and whose closest points and support values
-    /// are known.
+    /// A set about zero, swept by a ball, whose crossing has a closed form, with known closest points and support
+    /// values.
     ///
-    /// The points at `1.5e` before and behind the surface, along the normal at the entry, are measured against the
-    /// set, if that is no more than `longest` along the line.
+    /// The points at `1.5e` before and behind the surface, along the normal at the entry, are measured against the set,
+    /// if that is no more than `longest` along the line.
     #[inline(always)]
     pub(super) fn swept(
         &self,
@@ -477,7 +476,7 @@ impl<V: Vector> NearLine<V> {
         let reach = self.size * V::Scalar::from_f64(NEAR + 1.0) / self.direction.abs().max_element();
         let ahead = axis.dot(self.source) - support_value - axis.dot(self.direction).abs() * reach;
         let (squared, apart) = (axis.length_squared(), radius + self.error + self.error);
-        // Not by squares, which of a short axis and a small size are both zero.
+        // Not by squares: those of a short axis and a small size are both zero.
         let passes = is_comfortable(squared) & (ahead > V::Scalar::ZERO) & (ahead >= apart * squared.sqrt());
         passes.then_some(CertainCrossing::Misses(axis))
     }
@@ -488,8 +487,8 @@ impl<V: Vector3> NearLine<V> {
     ///
     /// It is behind the plane of its base and within its slant, `G(x) = cosα·ρ − sinα·(h − y) ≤ 0` at a distance `ρ`
     /// from the axis. `G` is how far a point is before the plane along the slant there, and it is crossed at the speed
-    /// `(cos²α·(ρ·d) + sin²α·(h − y)·d_y)/(sinα·(h − y))`. As of a [swept set](Self::swept), two points of the line
-    /// tell.
+    /// `(cos²α·(ρ·d) + sin²α·(h − y)·d_y)/(sinα·(h − y))`. As for a [swept set](Self::swept), two points of the line
+    /// are measured.
     #[inline(always)]
     pub(crate) fn cone(&self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
@@ -520,7 +519,7 @@ impl<V: Vector3> NearLine<V> {
             .then(|| self.enters([entry - slack, entry, entry + slack], normal))
     }
 
-    /// A cylinder about the second axis: the line is in the disc, as it is seen along the axis, and in the slab.
+    /// A cylinder about the second axis: the line is in the slab and, projected along the axis, in the disc.
     #[inline(always)]
     pub(crate) fn cylinder(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
@@ -574,34 +573,33 @@ impl<V: Vector> Chord<V> {
     }
 
     /// Whether the line passes the ball, or the disc of a set as long as `length` across it, by more than an error, and
-    /// so far that the plane across its nearest point `x` has the set behind it: as `x` is wrong by up to `e`, that
-    /// plane leans by `e/|x|`, and `|x|·(|x| − r) ≥ e·(r + e + length)` is enough. With `|x|² − r²` at most twice the
-    /// left side, three times as much leaves room for rounding.
+    /// so far that the plane across its nearest point `x` has the set behind it. Because `x` is wrong by up to `e`,
+    /// that plane leans by `e/|x|`, and `|x|·(|x| − r) ≥ e·(r + e + length)` is enough. With `|x|² − r²` at most twice
+    /// the left side, three times as much leaves room for rounding.
     #[inline(always)]
     fn is_past(&self, radius: V::Scalar, error: V::Scalar, length: V::Scalar) -> bool {
         -self.inside >= (radius + error + length) * error * V::Scalar::from_f64(3.0)
     }
 }
 
-/// What the squared half of a chord is to be at least for its [slack](Chord::slack), in units of the error times the
-/// radius.
+/// The least squared half of a chord that has a [slack](Chord::slack), in units of the error times the radius.
 const LEAST_CHORD: f64 = 10.0;
 
-/// The same where a line that grazes can be looked at more closely: the slack is then less than a part in some
-/// thousands of the radius.
+/// The same if a grazing line can be computed more closely: the slack is then less than a part in some thousands of the
+/// radius.
 #[inline(always)]
 fn least_chord<S: Scalar>() -> S {
     S::from_f64(if size_of::<S>() == size_of::<f64>() { 1e7 } else { 1e2 })
 }
 
-/// How far a cone reaches along an axis: its apex, or its base.
+/// The support value of a cone along an axis: at its apex, or at its base.
 #[inline(always)]
 pub(super) fn cone_reach<V: Vector3>(shape: &Cone<V>, axis: V) -> V::Scalar {
     let (apex, middle) = (shape.half_height() * axis.get(1), shape.disc_radius() * across(axis).length());
     apex.max(middle - apex)
 }
 
-/// The sum of the magnitudes of the coordinates, which a length is no more than.
+/// The sum of the magnitudes of the coordinates, an upper bound of the length.
 #[inline(always)]
 fn sum_of_coordinates<V: Vector>(v: V) -> V::Scalar {
     v.abs().dot(V::ONE)
@@ -631,7 +629,7 @@ fn least<V: Vector>(v: V) -> V::Scalar {
     (0..V::DIM).fold(V::Scalar::infinity(), |least, i| sooner(least, v.get(i)))
 }
 
-/// How far a matrix `R` that is nearly orthogonal is at most from the inverse of its transpose, where it takes a unit
+/// A bound on the difference of a nearly orthogonal matrix `R` from the inverse of its transpose, applied to a unit
 /// vector: `R⁻ᵀ − R = R⁻ᵀ(1 − RᵀR)`. The products lose `3u`.
 pub(crate) fn skew<M: Matrix>(matrix: &M) -> <M::Vector as Vector>::Scalar {
     let gram = M::from_cols_fn(|j| matrix.transpose_mul(matrix.col(j)));

@@ -1,10 +1,10 @@
 //! Where a line certainly enters a shape, in twice the precision.
 //!
-//! A line nearly along a surface, or one that grazes it, crosses it where errors as small as roundings of the shape's
-//! size move the crossing far. But the numbers of shape and line are exact as they are given: with all of them in
-//! twice the precision, only the error that comes with the shape is left. A shape is a union of pieces, each the
-//! intersection of slabs and quadrics, and the line is in each for a stretch with bounds on both ends. For every line
-//! that passes within the error, the shape is once made larger and once smaller by it.
+//! If a line is nearly along a surface, or grazes it, errors as small as roundings of the shape's size move the
+//! crossing far. But the given numbers of shape and line are exact: with all of them in twice the precision, only the
+//! error that comes with the shape is left. A shape is a union of pieces, each the intersection of slabs and quadrics,
+//! and the line is in each for a stretch with bounds on both ends. To hold for every line that passes within the error,
+//! the shape is once made larger and once smaller by it.
 //!
 //! The arithmetic is that of `f64` whatever the precision of the shape, and is compiled once.
 
@@ -63,7 +63,7 @@ pub(crate) fn cuboid<V: Vector>(line: LineQuery<V>, half_extents: V) -> Option<C
 #[inline(never)]
 pub(crate) fn cone<V: Vector3>(line: LineQuery<V>, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
     let (half_height, radius, (cosine, sine)) = (shape.half_height(), shape.disc_radius(), shape.slant());
-    // Of a disc and a segment the opening is none.
+    // A disc and a segment have no opening angle.
     if !(half_height.min(radius) > V::Scalar::ZERO) {
         return None;
     }
@@ -96,12 +96,12 @@ pub(crate) fn cylinder<V: Vector3>(
     closely(line, V::ZERO, hypot(half_height, radius), solid, outward, crossed, reach)
 }
 
-/// What a length is in units of a power of two.
+/// A length in units of a power of two.
 type InUnits<'a, V> = &'a dyn Fn(<V as Vector>::Scalar) -> f64;
 
-/// Only the error that came with the line counts. `outward` is the unit normal at a point of the surface. Of a line
-/// that misses, the closed form tells an axis, along which the core `reaches` so far; it counts for what it is
-/// measured to be, and a line that misses by rounding is left to a search.
+/// Only the error that came with the line counts. `outward` is the unit normal at a point of the surface. For a line
+/// that misses, the closed form gives an axis, along which the core `reaches` so far. The line is measured along it,
+/// and if it misses only by rounding, that is left to a search.
 fn closely<V: Vector>(
     line: LineQuery<V>,
     origin: V,
@@ -137,10 +137,10 @@ fn closely<V: Vector>(
 /// A shape about zero, in units of about its size; upright ones are about the second axis.
 #[derive(Clone, Copy)]
 pub(super) struct Solid {
-    /// The first entry of a line into its pieces, as they are when it is made larger by a length, or smaller if that is
-    /// negative. A pointer, so that a program has the pieces of its own shapes alone.
+    /// The first entry of a line into its pieces, made larger by a length, or smaller if the length is negative. A
+    /// pointer, so that a program contains only the pieces of its own shapes.
     union: fn(&CloseLine, &Self, f64) -> First,
-    /// Those of a box beyond the dimension are infinite; of an upright shape the second one is half the height.
+    /// Those of a box beyond the dimension are infinite; the second one of an upright shape is half its height.
     half_extents: [f64; 3],
     radius: f64,
 }
@@ -151,23 +151,23 @@ impl Solid {
     }
 }
 
-/// A line: its source as it is seen from the shape's origin, exactly, and its direction.
+/// A line: its source relative to the shape's origin, exactly, and its direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CloseLine {
     pub(super) source: [Bounded; 3],
     pub(super) direction: [f64; 3],
 }
 
-/// What is certain of a line and a shape.
+/// A certain answer for a line and a shape.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Known {
     Misses,
-    /// It enters between these parameters.
+    /// The line enters between these parameters.
     Enters([f64; 2]),
 }
 
 impl CloseLine {
-    /// What is certain of every line that passes within `error` near the shape.
+    /// The certain answer for every line that passes within `error` near the shape.
     pub(super) fn crossing(&self, solid: Solid, error: f64) -> Option<Known> {
         let union = |by| (solid.union)(self, &solid, by);
         let larger = union(error);
@@ -175,7 +175,7 @@ impl CloseLine {
         if larger.earliest == f64::INFINITY {
             return Some(Known::Misses);
         }
-        // NaN and infinity tell nothing.
+        // NaN and infinity prove nothing.
         let is_known = larger.earliest > f64::NEG_INFINITY && smaller.latest < f64::INFINITY;
         is_known.then_some(Known::Enters([larger.earliest, smaller.latest]))
     }
@@ -199,12 +199,12 @@ impl CloseLine {
         first
     }
 
-    /// Where `|x·eᵢ| ≤ half`.
+    /// The stretch where `|x·eᵢ| ≤ half`.
     fn slab(&self, axis: usize, half: Bounded) -> Stretch {
         self.between(axis, -half, half)
     }
 
-    /// Where the coordinate is between two numbers.
+    /// The stretch where the coordinate is between two numbers.
     fn between(&self, axis: usize, low: Bounded, high: Bounded) -> Stretch {
         let (at, speed) = (self.source[axis], self.direction[axis]);
         let (below, above) = (at - low, high - at);
@@ -221,7 +221,7 @@ impl CloseLine {
         Stretch { enters: (enters / speed.into()).bounds(), leaves: (leaves / speed.into()).bounds() }
     }
 
-    /// Where the coordinates that are meant are within a distance of a centre.
+    /// The stretch where the meant coordinates are within a distance of a centre.
     fn disc(&self, is_meant: [bool; 3], centre: [f64; 3], radius: Bounded) -> Stretch {
         if radius.is_negative() {
             return Stretch::NOWHERE;
@@ -238,8 +238,8 @@ impl CloseLine {
         }
     }
 
-    /// The cone is behind its base and below its apex, where `4h²·(x² + z²) ≤ r²·(h − y)²`. Each of its planes is
-    /// moved by `by`: the base by that, and the apex by `by/sinα`, with `α` half the opening angle.
+    /// The cone is behind its base and below its apex, where `4h²·(x² + z²) ≤ r²·(h − y)²`. Each of its planes is moved
+    /// by `by`: the base by `by`, and the apex by `by/sinα`, with `α` half the opening angle.
     fn cone(&self, solid: &Solid, by: f64) -> First {
         let Solid { half_extents: [_, half_height, _], radius, .. } = *solid;
         let height = half_height + half_height;
@@ -273,7 +273,7 @@ impl CloseLine {
     }
 
     /// A box swept by a ball: the boxes that are longer by the radius along one axis, the edges swept by a ball, and
-    /// the balls about the corners. A box that is swept by none is made larger, or smaller, itself.
+    /// the balls about the corners. A box without a radius is itself made larger, or smaller.
     fn rounded_box(&self, solid: &Solid, by: f64) -> First {
         let Solid { half_extents, radius, .. } = *solid;
         let mut first = First::NONE;
@@ -295,7 +295,7 @@ impl CloseLine {
                 return first;
             }
         }
-        // Of each axis the lower end, the upper end, or what is between.
+        // For each axis the lower end, the upper end, or the part between.
         for place in 0..27_usize {
             let sides = [place % 3, place / 3 % 3, place / 9].map(|side| [-1.0, 0.0, 1.0][side]);
             let is_meant = core::array::from_fn(|i| sides[i] != 0.0);
@@ -311,7 +311,7 @@ impl CloseLine {
     }
 }
 
-/// Where a line is in a set, between bounds on both ends.
+/// The stretch of a line in a set, with bounds on both ends.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
     enters: [f64; 2],
@@ -324,7 +324,7 @@ impl Stretch {
     const UNKNOWN: Self =
         Self { enters: [f64::NEG_INFINITY, f64::INFINITY], leaves: [f64::NEG_INFINITY, f64::INFINITY] };
 
-    /// Where it is in both.
+    /// The stretch in both.
     fn and(self, other: Self) -> Self {
         let (p, q) = (self, other);
         Self {
@@ -334,7 +334,7 @@ impl Stretch {
     }
 }
 
-/// Bounds on the first entry into one of several pieces; infinite where none is known, or none may be.
+/// Bounds on the first entry into one of several pieces; infinite if unknown or if there is none.
 #[derive(Clone, Copy)]
 struct First {
     earliest: f64,
@@ -354,14 +354,13 @@ impl First {
     }
 }
 
-/// Where `aλ² + 2bλ + c ≤ 0`: between its roots, or, where `a` is negative, outside of them.
+/// The part where `aλ² + 2bλ + c ≤ 0`: between its roots, or, if `a` is negative, outside of them.
 enum Quadric {
     Within(Stretch),
     Outside { low: [f64; 2], high: [f64; 2] },
 }
 
-/// The larger root of two in magnitude is a sum without cancellation, and the other one is their product, `c/a`, over
-/// it.
+/// The larger root in magnitude is a sum without cancellation, and the other one is their product, `c/a`, over it.
 fn quadric(a: Bounded, b: Bounded, c: Bounded) -> Quadric {
     if !(a.is_positive() || a.is_negative()) {
         // A line along the axis: in the disc everywhere or nowhere.
@@ -380,7 +379,7 @@ fn quadric(a: Bounded, b: Bounded, c: Bounded) -> Quadric {
     let root = discriminant.sqrt();
     let q = if b.is_positive() { -(b + root) } else { root - b };
     let [one, other] = [(q / a).bounds(), (c / q).bounds()];
-    // With `a > 0` the first is the greater one just where `q` is positive.
+    // With `a > 0` the first is the greater one exactly if `q` is positive.
     let (low, high) = if a.is_positive() != b.is_positive() { (other, one) } else { (one, other) };
     if a.is_positive() {
         Quadric::Within(Stretch { enters: low, leaves: high })

@@ -19,10 +19,10 @@ pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Cross
     }
     let (direction, dd, unit) = comfortable(direction);
     let recip = dd.recip();
-    // Seen from the apex: near it, and along the slant that runs through it, only what is left of the squares there
-    // tells where the line is.
+    // Relative to the apex: near it, and along the slant through it, only the differences of squares there determine
+    // the line.
     let (base, source) = rebased(source - V::axis(1) * h, direction, recip);
-    // From here on near the cone, where a unit direction keeps the products of four lengths and directions in range.
+    // From here on, near the cone, a unit direction keeps the products of four lengths and directions in range.
     let per_length = recip.sqrt();
     let direction = direction * per_length;
     let (y, rise) = (source.get(1), direction.get(1));
@@ -41,17 +41,17 @@ pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Cross
     // The larger of the two in magnitude first, so that B and the root do not cancel; the other from the product.
     let q = -(b + root.copysign(b));
     let far = if a == zero { infinity.copysign(-q) } else { q / a };
-    // With p from the apex and rounding u, the quotient C/q is wrong by u·p²/q, and what the root leaves of B, divided
-    // by A, by u·p/A².
+    // With p from the apex and rounding u, the quotient C/q is wrong by u·p²/q, and the difference of B and the root,
+    // divided by A, by u·p/A².
     let squared = a * a;
     let is_touched = q * q < source.length_squared() * (squared * squared);
     let near = if is_touched { (root.copysign(b) - b) / a } else { c / q };
     let near = if q == zero { far } else { near };
     let (low, high) = if near < far { (near, far) } else { (far, near) };
-    // Across the cone; or, where the line is steeper than the slant, into it for good, or out of it.
+    // Across the cone; or, if the line is steeper than the slant, into it for good, or out of it.
     let steep = if fall > zero { (high, infinity) } else { (-infinity, low) };
     let (enters, leaves) = if a > zero { (low, high) } else { steep };
-    // Across the cone, through that of its two nappes that is below the apex, at −B/A as anywhere between the roots.
+    // Across the cone, through its nappe below the apex, tested at −B/A as a point between the roots.
     let below = !(a > zero) | (drop * a >= fall * b);
 
     // From above, the line passes the plane of the apex outside of the cone.
@@ -59,14 +59,14 @@ pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Cross
     let entry = if through_slant & !(enters < top) { enters } else { top };
     let exit = if leaves < bottom { leaves } else { bottom };
     // The slant and the base of a flat cone are nearly parallel, and rounding moves the place where they meet along
-    // both; but the rim is at a distance r from the axis, which the crossing neither begins beyond nor ends before.
+    // both. But the rim is at a distance r from the axis: the crossing neither begins beyond it nor ends before it.
     let place = across(source + direction * entry);
     let rounding = V::Scalar::EPSILON * V::Scalar::from_f64(8.0);
     let within = place.length_squared() <= r * r * (V::Scalar::ONE + rounding);
     let in_order = entry <= exit + rounding * (h + h + r + entry.abs());
 
     let normal = if through_slant {
-        // At the apex one normal is as good as the other, as long as it looks against the line.
+        // At the apex any normal of the cone will do that is against the line.
         let facing = |out: V| out * cosine + V::axis(1) * sine;
         let normal = place.unit().map(facing).filter(|n| n.dot(direction) <= zero);
         normal.unwrap_or_else(|| across(direction).unit().map_or(V::axis(1), |out| facing(-out)))
@@ -85,14 +85,14 @@ pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Cross
 
 /// A vector across the line along which it is apart from the cone; it crosses the plane of the base at `at`.
 ///
-/// Seen along the line, the cone is the hull of an ellipse, its base, and of the apex. Either the line is beyond the
-/// rim, or beyond one of the two planes along it that touch the slant all along: their normals `cosα·u + sinα·y`, with
-/// a unit vector `u` across the axis, are across the direction `d` if `u·d = −tanα·d_y`.
+/// Projected along the line, the cone is the hull of an ellipse, its base, and of the apex. Either the line is beyond
+/// the rim, or beyond one of the two planes along it that touch the slant all along: their normals `cosα·u + sinα·y`,
+/// with a unit vector `u` across the axis, are across the direction `d` if `u·d = −tanα·d_y`.
 #[inline(always)]
 fn beside<V: Vector3>(cone: &Cone<V>, source: V, direction: V, at: V::Scalar) -> V {
     let beyond_rim = past_rim(source, direction, at);
     let (cosine, sine) = cone.slant();
-    // The apex is farther along that than the base is.
+    // The apex is farther than the base along that vector.
     if !(cosine * beyond_rim.get(1) > sine * across(beyond_rim).length()) {
         return beyond_rim;
     }

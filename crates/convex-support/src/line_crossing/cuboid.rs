@@ -8,7 +8,7 @@ use crate::{Scalar, Vector};
 /// The line is in the box while it is in all of its slabs.
 ///
 /// A line that is parallel to a slab divides by zero: it is then in the slab from `−∞` to `∞`, or from `±∞` to `±∞`,
-/// which the other slabs tell apart; and `0/0`, in the plane of a face, compares false and leaves things as they are.
+/// and the other slabs decide; and `0/0`, in the plane of a face, compares false and changes nothing.
 #[inline(always)]
 pub(crate) fn cuboid<V: Vector>(half_extents: V, source: V, direction: V) -> Crossed<V> {
     let per_unit = V::ONE / direction;
@@ -19,7 +19,7 @@ pub(crate) fn cuboid<V: Vector>(half_extents: V, source: V, direction: V) -> Cro
         entry = if enters.get(i) > entry { enters.get(i) } else { entry };
         exit = if leaves.get(i) < exit { leaves.get(i) } else { exit };
     }
-    // Some direction is across a slab, or all of them are so short that their reciprocals are infinite.
+    // Either no coordinate crosses a slab, or the reciprocals of all that do are infinite.
     if !(entry > -V::Scalar::infinity() && exit < V::Scalar::infinity()) {
         return along_no_axis(half_extents, source, direction);
     }
@@ -28,7 +28,7 @@ pub(crate) fn cuboid<V: Vector>(half_extents: V, source: V, direction: V) -> Cro
     if (entry <= exit) & known {
         Ok(Crossing { entry, exit, normal: face * V::ONE.copysign(-direction) })
     } else {
-        // One slab is left before the other is entered: seen along both of them, the line passes a rectangle.
+        // The line leaves one slab before it enters the other: projected along both of them, it passes a rectangle.
         Err(across_two_axes([face, axis_of(leaves, exit)], source, direction))
     }
 }
@@ -37,7 +37,7 @@ pub(crate) fn cuboid<V: Vector>(half_extents: V, source: V, direction: V) -> Cro
 #[cold]
 #[inline(never)]
 fn along_no_axis<V: Vector>(half_extents: V, source: V, direction: V) -> Crossed<V> {
-    // Nothing to be made longer; or so long already that a `NaN`, there or in the source, is what is wrong.
+    // A zero direction cannot be lengthened; if it is long already, a `NaN` in it or in the source is the cause.
     let largest = direction.abs().max_element();
     if largest == V::Scalar::ZERO || !(largest.recip() == V::Scalar::infinity()) {
         return Err(V::ZERO);

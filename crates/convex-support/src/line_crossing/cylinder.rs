@@ -31,7 +31,7 @@ pub(crate) fn cylinder<V: Vector3>(half_height: V::Scalar, r: V::Scalar, source:
     // The line leaves the side before it is at the height of the lids, or enters it after that.
     let rim = || past_rim(source, direction, if leaves < top { top } else { bottom });
     Crossing {
-        // A `NaN`, where the line misses the side, must come through to where entry and exit are compared.
+        // A `NaN`, if the line misses the side, must reach the comparison of entry and exit.
         entry: if top >= enters { top } else { enters },
         exit: if bottom < leaves { bottom } else { leaves },
         normal: if through_side { side.normal(r, radial, recip) } else { lid },

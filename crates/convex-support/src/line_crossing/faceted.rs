@@ -14,7 +14,7 @@ pub(crate) fn faceted<V: Vector>(hull: &Faceted<V>, source: V, direction: V) -> 
     let (base, near) = rebased(source, direction, dd.recip());
     let clipped = clip(hull.planes(), coordinates(near), coordinates(direction));
     let Clipped { entry, exit, into, .. } = clipped;
-    // A line enters and leaves a bounded set, so that otherwise something is not a number.
+    // A line enters and leaves a bounded set; otherwise some number is NaN.
     if !(entry > -V::Scalar::infinity() && exit < V::Scalar::infinity()) {
         return Err(V::ZERO);
     }
@@ -22,15 +22,15 @@ pub(crate) fn faceted<V: Vector>(hull: &Faceted<V>, source: V, direction: V) -> 
 }
 
 impl<V: Vector> NearLine<V> {
-    /// A hull, seen from its middle, that is within the half-spaces of its facets, and has all points in it that are
+    /// A hull, relative to its middle, that is within the half-spaces of its facets, and contains all points that are
     /// behind their planes by more than the error.
     ///
-    /// The line enters the half-space of one facet last. Before it does so by the error, it is outside; where it is
-    /// behind that plane by twice the error, all planes are asked whether it is behind them by the error.
+    /// The line enters the half-space of one facet last. Before that by the error, it is outside; behind that plane by
+    /// twice the error, the point of the line is tested to be behind all planes by the error.
     ///
-    /// From the foot of the line, no more than 2 sizes `S` from the middle where it matters, the product of a normal
-    /// with it loses `6uS`, that with the direction `9uS` of what is up to 3 sizes away, the two differences and the
-    /// quotient `12uS`: with what the reach loses `30uS`, less than what [`at_foot`](Self::at_foot) allows for. A point
+    /// If it matters, the foot of the line is no more than 2 sizes `S` from the middle. The product of a normal with
+    /// the foot loses `6uS`, that with the direction `9uS`, up to 3 sizes away, the two differences and the quotient
+    /// `12uS`: with the rounding of the support values `30uS`, less than [`at_foot`](Self::at_foot) allows for. A point
     /// of the line loses `4uS`, and its product with a normal `3uS`.
     #[inline(always)]
     pub(crate) fn faceted(&self, hull: &Faceted<V>) -> Option<CertainCrossing<V>> {
@@ -42,8 +42,8 @@ impl<V: Vector> NearLine<V> {
         (matches!(known, CertainCrossing::Misses(_)) || is_in()).then_some(known)
     }
 
-    /// What the planes tell that the line, seen from its foot, enters and leaves by; that it enters if the point at the
-    /// given parameter is in the hull.
+    /// The answer by the planes that the line, from its foot, enters and leaves by. It enters if the point at the
+    /// returned parameter is in the hull.
     #[inline(always)]
     pub(super) fn cut(
         &self,
@@ -65,8 +65,8 @@ impl<V: Vector> NearLine<V> {
             let (earliest, latest) = (entry + slack, entry - (slack + slack));
             return Some((self.enters([earliest, entry, latest], normal), latest));
         }
-        // One half-space is left before the other is entered: a plane through both edges, along the line. What is
-        // parallel to the line has the line before it at any parameter.
+        // The line leaves one half-space before it enters the other: the plane along it through their common edge
+        // separates. A plane parallel to the line has the line before it at any parameter.
         let (other, rises, behind_other) = plane(out_of);
         let is_missed = (rises >= V::Scalar::ZERO) & (behind / falls > behind_other / rises);
         is_missed.then(|| (CertainCrossing::Misses(normal * rises - other * falls), entry))
@@ -88,13 +88,13 @@ pub(super) struct Clipped<S> {
 /// Clips the line through a point along a direction by planes.
 ///
 /// A line along a plane divides by zero: it is then behind it from `−∞` to `∞` or nowhere; and `0/0`, in the plane
-/// itself, compares false and leaves things as they are. Adding zero makes a positive zero of a negative one, which is
-/// told from negative numbers.
+/// itself, compares false and changes nothing. Adding zero makes a negative zero positive, so that it does not count as
+/// a negative number.
 #[inline(never)]
 fn clip<S: Scalar>(planes: &[Planes<S>], [x, y, z]: [S; 3], [dx, dy, dz]: [S; 3]) -> Clipped<S> {
     let (below, width) = (-S::infinity(), S::from_f64(PLANES as f64));
     let mut here: [S; PLANES] = core::array::from_fn(|l| S::from_f64(l as f64));
-    // Of all the planes that it enters by, and that the line backwards enters by.
+    // The last of the planes by which the line enters, and of those by which the reversed line enters.
     let (mut entries, mut into) = ([below; 2 * PLANES], [S::ZERO; 2 * PLANES]);
     for [nx, ny, nz, reach] in planes {
         let slope: [S; PLANES] = core::array::from_fn(|l| nx[l] * dx + ny[l] * dy + nz[l] * dz + S::ZERO);

@@ -1,8 +1,8 @@
 //! The stretch of a line within a set, in closed form.
 //!
-//! These functions are short, and most rays want no normal and many no exit: they are inlined always, so that unused
-//! results are not computed. Half of the rays miss, and a branch that cannot be predicted takes longer than the
-//! arithmetic it skips: so a miss is a `NaN` or an entry behind the exit, and is told from a hit at the end.
+//! These functions are short. Most rays need no normal and many no exit, so they are always inlined, and unused results
+//! are not computed. Half of the rays miss, and a branch that cannot be predicted takes longer than the arithmetic it
+//! skips. So a miss is a `NaN` or an entry behind the exit, and is recognized at the end.
 
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons are written so that NaN is a miss")]
 
@@ -82,8 +82,8 @@ impl<V: Vector> Crossing<V> {
         ((self.exit >= V::Scalar::ZERO) & (self.entry <= max_lambda)).then_some(first)
     }
 
-    /// With `λ` counted from where the line was before it was re-based, in units of the direction before it was made
-    /// comfortable; a miss, along the given axis, where the stretch is empty or `NaN`.
+    /// The crossing with `λ` counted from the original source, in units of the original direction; a miss, along the
+    /// given axis, if the stretch is empty or `NaN`.
     #[inline(always)]
     fn shifted(self, base: V::Scalar, unit: V::Scalar, axis: impl FnOnce() -> V) -> Crossed<V> {
         if self.entry <= self.exit {
@@ -214,22 +214,22 @@ pub fn line_crossing<S: CrossedByLine + ?Sized>(
     shape.core_line_crossing(source - origin, direction, radius)
 }
 
-/// The part of a line within a ball about zero, as `middle ± half`; `half` is `NaN` where the line misses the ball.
+/// The part of a line within a ball about zero, as `middle ± half`; `half` is `NaN` if the line misses the ball.
 struct Chord<V: Vector> {
     middle: V::Scalar,
     half: V::Scalar,
     /// The point of the line nearest zero.
     nearest: V,
-    /// The square of the radius less that of the distance there.
+    /// The square of the radius less that of the distance of that point.
     inside: V::Scalar,
 }
 
-/// Where the line is nearest zero; `recip` is `1/|direction|²`.
+/// The parameter at which the line is nearest zero; `recip` is `1/|direction|²`.
 #[inline(always)]
 fn rebased<V: Vector>(source: V, direction: V, recip: V::Scalar) -> (V::Scalar, V) {
     let first = -source.dot(direction) * recip;
     let near = source + direction * first;
-    // Far from zero that was rounded to the distance of the source; the second step is rounded to that of the line.
+    // Far from zero, the first step was rounded to the distance of the source; the second is rounded to the line's.
     let second = -near.dot(direction) * recip;
     (first + second, near + direction * second)
 }
@@ -281,15 +281,14 @@ fn axis_of<V: Vector>(v: V, value: V::Scalar) -> V {
 #[inline(always)]
 fn across_two_axes<V: Vector>([a, b]: [V; 2], source: V, direction: V) -> V {
     let across = a * b.dot(direction) - b * a.dot(direction);
-    // A line along both of the slabs that these are across is outside of each.
+    // A line along both slabs across these axes is outside of each.
     let across = if across == V::ZERO { a } else { across };
     across * V::Scalar::ONE.copysign(across.dot(source))
 }
 
-/// The normal of the plane along a line that is parallel to the rim of a disc about the second axis, where the line
-/// crosses the plane of the disc at `at` and outside of it: with `ρ` the vector from the disc's middle to there, it is
-/// across `d` and across the tangent `y × ρ`, which makes it a multiple of `ρ·d_y − y·(ρ·d)`. A level line passes above
-/// or below.
+/// The normal of the plane along a line that is parallel to the rim of a disc about the second axis. The line crosses
+/// the plane of the disc at `at`, outside of the disc. With `ρ` the vector from the disc's middle to `at`, the normal
+/// is across `d` and the tangent `y × ρ`: a multiple of `ρ·d_y − y·(ρ·d)`. A level line passes above or below.
 #[inline(always)]
 fn past_rim<V: Vector3>(source: V, direction: V, at: V::Scalar) -> V {
     let rise = direction.get(1);
@@ -313,8 +312,8 @@ fn slab<S: Scalar>(y: S, rise: S, half_height: S) -> (S, S) {
     (enters, leaves)
 }
 
-/// The direction, made longer or shorter by a power of two where its square would over- or underflow; the square of its
-/// length; and the power, which is what one unit of `λ` along it is in units of the given direction.
+/// The direction, scaled by a power of two if its square would over- or underflow; the square of its length; and the
+/// power, which is the length of a unit of `λ` along it in units of the given direction.
 ///
 /// A zero, infinite or `NaN` direction has a `λ` that is `NaN`.
 #[inline(always)]
@@ -328,8 +327,8 @@ fn comfortable<V: Vector>(direction: V) -> (V, V::Scalar, V::Scalar) {
     }
 }
 
-/// Far enough that the shortest and the longest vectors come into range, and not so far that any leaves it: with
-/// `2⁻⁶¹⁵` and `2⁶¹⁵` in `f64`, lengths of `2⁻¹⁰⁷⁴..2⁻⁴⁸⁵` become `2⁻⁴⁵⁹..2¹³⁰` and `2⁵¹²..2¹⁰²⁴` become `2⁻¹⁰³..2⁴⁰⁹`.
+/// Powers that bring the shortest and the longest vectors into range, and no others out of it: with `2⁻⁶¹⁵` and `2⁶¹⁵`
+/// in `f64`, lengths of `2⁻¹⁰⁷⁴..2⁻⁴⁸⁵` become `2⁻⁴⁵⁹..2¹³⁰` and `2⁵¹²..2¹⁰²⁴` become `2⁻¹⁰³..2⁴⁰⁹`.
 #[cold]
 #[inline(never)]
 fn comfortable_unit<S: Scalar>(squared: S) -> S {

@@ -7,9 +7,8 @@ use crate::{Scalar, Vector};
 
 /// The squared distance from a box is `φ(λ) = Σ max(|xᵢ| − hᵢ, 0)²` along the line: convex, and one quadratic between
 /// any two neighbouring crossings of the planes `xᵢ = ±hᵢ`. The line enters the rounded box where `φ` falls to
-/// `radius²`, and not before it enters the box of half extents `hᵢ + radius`: from there, part after part is
-/// searched. Most lines enter through one of the flat sides, in the first part. They leave where the reversed line
-/// enters.
+/// `radius²`, and not before it enters the box of half extents `hᵢ + radius`: from there the parts are searched in
+/// order. Most lines enter through one of the flat sides, in the first part. They leave where the reversed line enters.
 #[inline]
 pub(crate) fn rounded_cuboid<V: Vector>(h: V, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
@@ -41,8 +40,8 @@ fn largest<V: Vector>(v: V) -> V::Scalar {
     (0..V::DIM).fold(-V::Scalar::infinity(), |most, i| if v.get(i) > most { v.get(i) } else { most })
 }
 
-/// A line, and where it crosses the sides of a box: the slab of coordinate `i` from the side at `nearᵢ`, at `entersᵢ`,
-/// to the side at `−nearᵢ`, at `leavesᵢ`.
+/// A line, and its crossings with the sides of a box: the slab of coordinate `i` from the side at `nearᵢ`, at
+/// `entersᵢ`, to the side at `−nearᵢ`, at `leavesᵢ`.
 struct Line<V: Vector> {
     source: V,
     direction: V,
@@ -52,8 +51,8 @@ struct Line<V: Vector> {
 }
 
 impl<V: Vector> Line<V> {
-    /// Where the line enters the rounded box, which is between `begin` and `end`; the shortest vector to it where it
-    /// misses.
+    /// The parameter between `begin` and `end` where the line enters the rounded box; the shortest vector to the line
+    /// if it misses.
     #[inline(always)]
     fn entry(&self, radius: V::Scalar, begin: V::Scalar, end: V::Scalar) -> Result<V::Scalar, V> {
         let (mut lambda, mut nearest) = (begin, None);
@@ -71,7 +70,7 @@ impl<V: Vector> Line<V> {
             let recip = dd.recip();
             let middle = -outside.dot(speed) * recip;
             let chord = Chord::about(middle, outside + speed * middle, recip, radius);
-            // The distance is least where a part is nearest the box before it ends.
+            // The distance is least where the middle of a quadratic lies within its part.
             nearest = if (lambda <= middle) & (middle <= next) { Some(chord.nearest) } else { nearest };
             let (enters, leaves) = chord.ends();
             if dd == V::Scalar::ZERO {
@@ -94,7 +93,7 @@ impl<V: Vector> Line<V> {
         Err(nearest.unwrap_or_else(|| self.nearest()))
     }
 
-    /// The shortest vector from the box to the line, which passes it.
+    /// The shortest vector from the box to the line, which misses it.
     fn nearest(&self) -> V {
         let mut lambda = -V::Scalar::infinity();
         for _ in 0..=2 * V::DIM {
@@ -108,7 +107,7 @@ impl<V: Vector> Line<V> {
         V::ZERO
     }
 
-    /// The part from a parameter on.
+    /// The part that begins at a parameter.
     #[inline(always)]
     fn part_from(&self, lambda: V::Scalar) -> QuadraticPart<V> {
         let (mut outside, mut speed, mut beyond, mut next) = (V::ZERO, V::ZERO, 0, V::Scalar::infinity());
@@ -132,9 +131,9 @@ impl<V: Vector> Line<V> {
 struct QuadraticPart<V: Vector> {
     /// By how much the line is outside of the box, at its source.
     outside: V,
-    /// How fast that changes.
+    /// The rate of change of `outside`.
     speed: V,
-    /// In how many coordinates it is outside.
+    /// The number of coordinates in which it is outside.
     beyond: usize,
     /// Where the part ends.
     next: V::Scalar,

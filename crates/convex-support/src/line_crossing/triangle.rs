@@ -8,10 +8,10 @@ use crate::shapes::PlanarTriangle;
 use crate::{Scalar, Triangle, Vector};
 
 /// The prism over the triangle, as thick as the ball, and the three edges swept by the ball: their union is convex, so
-/// the line is inside from the first entry to the last exit. In 2D the triangle itself stands for the prism.
+/// the line is inside from the first entry to the last exit. In 2D the triangle itself replaces the prism.
 ///
 /// Without a ball, in 3D a line crosses the triangle at a point, where `entry` and `exit` agree. A triangle without
-/// area, a segment, has no side to cross it by: a miss.
+/// area, a segment, has no side for a line to cross: a miss.
 pub(crate) fn triangle<V: Vector>(triangle: &Triangle<V>, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, _, unit) = comfortable(direction);
     let mut union = if V::DIM == 2 {
@@ -35,14 +35,14 @@ pub(crate) fn triangle<V: Vector>(triangle: &Triangle<V>, radius: V::Scalar, sou
 }
 
 impl<V: Vector> Triangle<V> {
-    /// The crossing of a triangle in 2D: through the edges whose ends are on different sides of the line. A line meets
-    /// a sliver too, however thin, that lies across it.
+    /// The crossing of a triangle in 2D: through the edges whose ends are on different sides of the line. A line also
+    /// meets a sliver across it, however thin.
     fn crossing_in_the_plane(&self, source: V, direction: V) -> Option<Crossing<V>> {
         let zero = V::Scalar::ZERO;
         let left = |v: V| V::from_fn(|i| if i == 0 { -v.get(1) } else { v.get(0) });
         let [a, b, c] = self.points();
         let (base, source) = rebased(source - a, direction, direction.length_squared().recip());
-        // Every corner by how far it is to the left of the line, and how far along it.
+        // For each corner, how far it is to the left of the line, and how far along it.
         let corners = [V::ZERO, b - a, c - a].map(|p| {
             let p = p - source;
             (left(direction).dot(p), direction.dot(p) / direction.length_squared(), p)
@@ -69,33 +69,33 @@ impl<V: Vector> Triangle<V> {
         crossing.shifted(base, V::Scalar::ONE, || V::ZERO).ok()
     }
 
-    /// The crossing of the points within a distance `radius` of the triangle in 3D, across its plane; or, of the
-    /// triangle itself, where the line has crossed it even if its corners are moved by up to an `error`.
+    /// The crossing of the points within a distance `radius` of the triangle in 3D, across its plane; or of the
+    /// triangle itself, where the line crosses it even if its corners are moved by up to an `error`.
     ///
-    /// Seen along the line, no point of a side is moved by more than the error `e`, so that the line crosses the
-    /// triangle still if it is seen more than `e` inside of all sides. With the cosine `s` at which it crosses the
-    /// plane it is so where it crosses more than `e/s` inside of them; and a point of the moved triangle is no farther
-    /// than `e` from the plane, which the line leaves behind by as much after `e/s`.
+    /// Projected along the line, no point of a side moves by more than the error `e`, so that the line still crosses
+    /// the triangle if its projection is more than `e` inside of all sides. With the cosine `s` at which it crosses the
+    /// plane, that holds if it crosses more than `e/s` inside of them. A point of the moved triangle is no farther than
+    /// `e` from the plane, which the line leaves behind by as much after `e/s`.
     fn prism_crossing(&self, radius: V::Scalar, error: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
         let PlanarTriangle { corners: [a, b, _], axes: [u, v], length, along, height } = self.in_its_plane()?;
         let (base, from_a) = rebased(source - a, direction, direction.length_squared().recip());
         let zero = V::Scalar::ZERO;
         let mut clip = Clip::default();
-        // The normal is what is left of the axis that is least within the plane.
+        // The normal is the part off the plane of the axis that is least within it.
         let off_plane = |x: V| x - u * u.dot(x) - v * v.dot(x);
         let lengths = V::from_fn(|i| off_plane(V::axis(i)).length_squared());
         let steepest = (1..V::DIM).fold(0, |best, i| if lengths.get(i) > lengths.get(best) { i } else { best });
         let normal = off_plane(off_plane(V::axis(steepest))).unit()?;
         clip.cut(normal, from_a, radius, direction);
         clip.cut(-normal, from_a, radius, direction);
-        // How much later the line has crossed the triangle for certain, and how far that is inside of the edges.
+        // How much later the line has certainly crossed the triangle, and how far inside of the edges that is.
         let late = if error > zero { error / normal.dot(direction).abs() } else { zero };
         let inside = -late * direction.length();
         // Outward of each edge, within the plane.
         clip.cut(-v, from_a, inside, direction);
         clip.cut((u * height + v * (length - along)).unit()?, from_a - (b - a), inside, direction);
         clip.cut((v * along - u * height).unit()?, from_a, inside, direction);
-        // The sides of a sliver are parallel to rounding and do not say where it ends; its longest edge does, and is
+        // The sides of a sliver are parallel to rounding and do not bound its length; its longest edge does, being
         // normal to a supporting line at both of its ends.
         clip.cut(-u, from_a, inside, direction);
         clip.cut(u, from_a, length + inside, direction);
@@ -106,9 +106,9 @@ impl<V: Vector> Triangle<V> {
 impl<V: Vector> NearLine<V> {
     /// A triangle about zero, in 3D.
     ///
-    /// The line has not met it before the plane across its normal through the corner that comes first, by two errors:
-    /// what a product with a point loses is [less than one](Self::passes), and so is it for the sides. It misses where
-    /// it is beyond the plane along itself through a side.
+    /// The line has not met it before the plane across its normal through the first corner, by two errors: a product
+    /// with a point loses [less than one](Self::passes), also for the sides. It misses if it is beyond the plane along
+    /// itself through a side.
     #[inline(never)]
     pub(crate) fn triangle(&self, corners: &Triangle<V>) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
@@ -124,7 +124,7 @@ impl<V: Vector> NearLine<V> {
         let PlanarTriangle { corners: [a, b, c], axes: [u, v], .. } = corners.in_its_plane()?;
         let across = |e: V| u * v.dot(e) - v * u.dot(e);
         [b - a, c - b, a - c].into_iter().find_map(|side| {
-            // Out of the triangle within its plane, and as much across the plane as takes it across the line.
+            // Out of the triangle within its plane, and so much across the plane that it is across the line.
             let out = across(side);
             let off = direction - u * u.dot(direction) - v * v.dot(direction);
             let axis = out - off * (out.dot(direction) / off.dot(direction));
@@ -135,19 +135,19 @@ impl<V: Vector> NearLine<V> {
     /// A triangle about zero, swept by a ball.
     pub(crate) fn rounded_triangle(&self, corners: &Triangle<V>, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let crossed = triangle(corners, radius, self.source, self.direction);
-        // What rounding moves by less than the error may be longer than the radius.
+        // Rounding may exceed a small radius, so that the normal is not of unit length.
         let crossed = crossed.map(|at| Crossing { normal: at.normal.unit().unwrap_or(at.normal), ..at });
         let closest = |x| closest_of_triangle(corners, x);
         self.swept(radius, closest, |n| reach(corners, n), crossed, self.longest_slack())
     }
 }
 
-/// How far the corners reach along a vector: the largest product, where the support point's may be an ulp less.
+/// The support value of the corners along a vector: the largest product; that of the support point may be an ulp less.
 fn reach<V: Vector>(corners: &Triangle<V>, n: V) -> V::Scalar {
     corners.points().into_iter().map(|p| n.dot(p)).fold(-V::Scalar::infinity(), V::Scalar::max)
 }
 
-/// What half-spaces leave of a line.
+/// The part of a line within half-spaces.
 struct Clip<V: Vector> {
     crossing: Option<Crossing<V>>,
 }
@@ -161,7 +161,7 @@ impl<V: Vector> Default for Clip<V> {
 }
 
 impl<V: Vector> Clip<V> {
-    /// Keeps what satisfies `normal·x ≤ offset`.
+    /// Keeps the part where `normal·x ≤ offset`.
     #[inline]
     fn cut(&mut self, normal: V, source: V, offset: V::Scalar, direction: V) {
         let Some(crossing) = &mut self.crossing else { return };

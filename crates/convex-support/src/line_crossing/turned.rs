@@ -1,4 +1,4 @@
-//! Lines as a shape sees them that was turned.
+//! Lines in the frame of a turned shape.
 
 use super::{LineQuery, NearLine};
 use crate::{Matrix, Vector};
@@ -7,18 +7,18 @@ use crate::{Matrix, Vector};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned<V: Vector> {
     pub(crate) rotation: V::Matrix,
-    /// Where the origin is now.
+    /// The new position of the origin.
     pub(crate) center: V,
-    /// The size of the shape, and the error that it is known to.
+    /// The size of the shape, and its error.
     pub(crate) size: V::Scalar,
     pub(crate) error: V::Scalar,
-    /// Where the origin is not zero for the shape: what was lost of its image, as the shape sees it; the origin; and
-    /// the error of taking the one off and putting the other on.
+    /// If the origin is not zero for the shape: the lost part of its image, in the frame of the shape; the origin; and
+    /// the error of subtracting the one and adding the other.
     pub(crate) from: Option<(V, V, V::Scalar)>,
 }
 
 impl<V: Vector> Turned<V> {
-    /// A line near the shape, from its foot, as the shape sees it.
+    /// A line near the shape, from its foot, in the frame of the shape.
     #[inline(always)]
     pub(crate) fn before(&self, near: &NearLine<V>, asked: LineQuery<V>) -> LineQuery<V> {
         let [source, direction] = [near.source, near.direction].map(|v| self.rotation.transpose_mul(v));

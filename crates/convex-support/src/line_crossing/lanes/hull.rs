@@ -7,7 +7,7 @@ use crate::shapes::{PLANES, Planes};
 use crate::{Scalar, Vector, compiled_once};
 
 compiled_once! {
-    /// A hull by the planes of its facets as they are seen from a point, known to within an `error`.
+    /// A hull by the planes of its facets relative to a point, known to within an `error`.
     pub(crate) fn hull<V>(
         lines: &mut Lines<<V as Vector>::Scalar>,
         planes: &[Planes<<V as Vector>::Scalar>],
@@ -26,7 +26,7 @@ compiled_once! {
                     set(&mut lines.near, line, foot.source);
                 }
                 let clipped = clip_lines(planes, &lines.near, &lines.direction);
-                // Where each is to be in the hull if it enters it.
+                // The parameter at which each line is in the hull if it enters it.
                 let mut inner = [[V::Scalar::ZERO; LINES]; 3];
                 for line in 0..LINES {
                     let near = lines.near::<V>(line, size);
@@ -49,7 +49,7 @@ compiled_once! {
     }
 }
 
-/// [`Clipped`] of many lines; the exits are turned around.
+/// [`Clipped`] for many lines; the exits are negated.
 struct ClippedLines<S> {
     entries: Lane<S>,
     exits: Lane<S>,
@@ -65,8 +65,8 @@ impl<S: Scalar> ClippedLines<S> {
     }
 }
 
-/// What `clip` does of one line, of many, each at one plane after the other; of one line, planes are side by side. Of
-/// planes that are entered at the same parameter it finds the same one: the first of the first row.
+/// `clip` for many lines, each at one plane after the other; for one line, planes are side by side. Among planes that
+/// are entered at the same parameter both find the same one: the first of the first row.
 #[inline(always)]
 fn clip_lines<S: Scalar>(
     planes: &[Planes<S>],
@@ -101,7 +101,7 @@ fn clip_lines<S: Scalar>(
     found
 }
 
-/// What `most_beyond` does of one point, of many, each at one plane after the other.
+/// `most_beyond` for many points, each at one plane after the other.
 #[inline(always)]
 fn most_beyond_of_all<S: Scalar>(planes: &[Planes<S>], [x, y, z]: &[Lane<S>; 3]) -> Lane<S> {
     let mut most = [-S::infinity(); LINES];

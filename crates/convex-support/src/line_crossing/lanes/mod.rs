@@ -1,8 +1,8 @@
 //! Many lines at one shape, side by side.
 //!
 //! A shape's closed form for one line is run over an array of them. There is no second formula: all of it is inlined
-//! into a loop that stores nothing but numbers, so that compilers compute both sides of each branch for several lines
-//! at a time, and choose. Each answer is that of the line alone, to the last bit; or the line is in doubt, and to be
+//! into a loop that stores only numbers, so that compilers compute both sides of each branch for several lines at a
+//! time, and select. Each answer is that of the line alone, to the last bit; or the line is in doubt, and has to be
 //! asked alone.
 
 #![allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
@@ -15,14 +15,14 @@ use super::{CertainCrossing, LineQuery, NearLine, Spine, Turned};
 use crate::numerics::widest::{Loop, widest};
 use crate::{Matrix, Scalar, Vector, compiled_once};
 
-/// How many lines are asked at a time: a multiple of what a vector register holds on every target.
+/// The number of lines in an array: a multiple of the width of a vector register on every target.
 pub const LINES: usize = 32;
 
 /// A number of each line.
 type Lane<S> = [S; LINES];
 
-/// Lines, coordinate by coordinate, and what a shape [certainly knows](crate::CrossedByLine::certain_crossings) of
-/// them. While it is asked, it may write over them.
+/// Lines, coordinate by coordinate, and the [certain answers](crate::CrossedByLine::certain_crossings) of a shape. The
+/// shape may overwrite the lines.
 #[doc(hidden)]
 #[derive(Clone, Debug)]
 pub struct Lines<S> {
@@ -30,22 +30,22 @@ pub struct Lines<S> {
     pub source: [Lane<S>; 3],
     /// The direction of each line.
     pub direction: [Lane<S>; 3],
-    /// The answer is to hold for every line that passes within this distance of the line near the shape.
+    /// The answer must hold for every line that passes within this distance of the line near the shape.
     pub error: Lane<S>,
-    /// 1 where the line enters the shape, −1 where it misses it, 0 where it is to be asked alone.
+    /// 1 if the line enters the shape, −1 if it misses it, 0 if it has to be asked alone.
     pub known: Lane<S>,
-    /// Where the line enters.
+    /// The parameter where the line enters.
     pub entry: Lane<S>,
-    /// Bounds on that.
+    /// Bounds on the entry.
     pub bounds: [Lane<S>; 2],
-    /// The normal there.
+    /// The normal at the entry.
     pub normal: [Lane<S>; 3],
-    /// What [`NearLine`] has of each, and 1 or 0 whether there is one.
+    /// The fields of each [`NearLine`], and 1 or 0 whether there is one.
     is_near: Lane<S>,
     base: Lane<S>,
     near: [Lane<S>; 3],
     near_error: Lane<S>,
-    /// What [`BeyondEnd`] has of each.
+    /// The fields of each [`BeyondEnd`].
     beyond: [Lane<S>; 3],
 }
 
@@ -82,7 +82,7 @@ fn set<V: Vector>(lanes: &mut [Lane<V::Scalar>; 3], line: usize, v: V) {
 }
 
 impl<S: Scalar> Lines<S> {
-    /// Whether any line is to be asked alone.
+    /// Whether any line has to be asked alone.
     #[must_use]
     pub fn any_in_doubt(&self) -> bool {
         any(&self.known, |known| known == S::ZERO)
@@ -99,14 +99,14 @@ impl<S: Scalar> Lines<S> {
         }
     }
 
-    /// What was written down of a line.
+    /// The stored answer of a line.
     #[inline(always)]
     fn told<V: Vector<Scalar = S>>(&self, line: usize) -> Told<V> {
         let bounds = [self.bounds[0][line], self.bounds[1][line]];
         Told { known: self.known[line], entry: self.entry[line], bounds, normal: vector(&self.normal, line) }
     }
 
-    /// Writes down what is known of a line, if it is near.
+    /// Stores the answer of a line, if it is near.
     #[inline(always)]
     fn tell<V: Vector<Scalar = S>>(&mut self, line: usize, told: Told<V>) {
         self.known[line] = told.known * self.is_near[line];
@@ -117,8 +117,7 @@ impl<S: Scalar> Lines<S> {
     }
 }
 
-/// [`CertainCrossing`] or nothing, in numbers: all are written whatever is known, since stores of some lanes alone are
-/// slow.
+/// [`CertainCrossing`] or nothing, in numbers: all are always stored, because stores of only some lanes are slow.
 #[derive(Clone, Copy)]
 struct Told<V: Vector> {
     known: V::Scalar,
@@ -140,9 +139,9 @@ impl<V: Vector> Told<V> {
     }
 }
 
-/// What is done with each line, inlined always, unlike a closure.
+/// A step for each line, always inlined, unlike a closure.
 trait EachLine<V: Vector>: Copy {
-    /// What is true of all lines; where it is not, nothing is done. So the compiler knows it in the loop.
+    /// A condition of all lines; unless it holds, nothing is done. So the compiler may assume it in the loop.
     #[inline(always)]
     fn holds(&self) -> bool {
         true
@@ -168,13 +167,12 @@ fn each<V: Vector>(lines: &mut Lines<V::Scalar>, body: impl EachLine<V>) {
     widest(Each(lines, body));
 }
 
-/// Whether any is so; without a branch for each.
+/// Whether any element satisfies it, without a branch for each.
 fn any<S: Scalar>(lane: &Lane<S>, is_so: impl Fn(S) -> bool) -> bool {
     lane.iter().fold(false, |any, &value| any | is_so(value))
 }
 
-/// Sees the lines, known a further `error` less exactly, from a point near a shape of a `size` about an `origin`, as
-/// [`NearLine::new`] does.
+/// The lines, with a further `error`, relative to a shape of a `size` about an `origin`, as by [`NearLine::new`].
 fn approach<V: Vector>(lines: &mut Lines<V::Scalar>, origin: V, size: V::Scalar, error: V::Scalar) {
     #[derive(Clone, Copy)]
     struct Approach<V: Vector, const FAR: bool>(V, V::Scalar, V::Scalar);
@@ -196,7 +194,7 @@ fn approach<V: Vector>(lines: &mut Lines<V::Scalar>, origin: V, size: V::Scalar,
     }
 }
 
-/// The vector as plain numbers.
+/// The vector with plain numbers.
 #[inline(always)]
 fn numbers<V: Vector>(v: V) -> V::Numbers {
     Vector::from_fn(|i| v.get(i))
@@ -252,7 +250,7 @@ compiled_once! {
 }
 
 compiled_once! {
-    /// A segment about zero along the second axis, swept by a ball: its side, and then the ends of the lines that meet
+    /// A segment about zero along the second axis, swept by a ball: its side, and then the ends for the lines that meet
     /// them.
     pub(crate) fn capsule<V>(
         lines: &mut Lines<<V as Vector>::Scalar>,
@@ -306,11 +304,11 @@ compiled_once! {
     }
 }
 
-/// The parameters that lines as a shape sees them are counted from, and whether there are such lines, 1 or 0.
+/// The base parameters of lines in the frame of a shape, and whether there are such lines, 1 or 0.
 type Counted<S> = [Lane<S>; 2];
 
 compiled_once! {
-    /// The lines as the shape sees them that was turned.
+    /// The lines in the frame of a turned shape.
     pub(crate) fn before_turn<V>(
         lines: &mut Lines<<V as Vector>::Scalar>,
         turned: Turned<V>,
@@ -343,7 +341,7 @@ compiled_once! {
 }
 
 compiled_once! {
-    /// What the shape knew of the lines as it saw them, of the lines as they were.
+    /// The answers of a shape in its own frame, for the given lines.
     pub(crate) fn after_turn<V>(
         lines: &mut Lines<<V as Vector>::Scalar>,
         rotation: <V as Vector>::Matrix,
