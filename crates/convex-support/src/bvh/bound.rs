@@ -56,7 +56,7 @@ fn rounding<S: Scalar>() -> S {
 /// boxes or the half extents (see [`outer_box`](super::outer_box)).
 #[derive(Clone, Copy, Debug)]
 pub struct SweptBox<V: Vector> {
-    /// What the smallest and the largest of a box are compared with: s + h and s − h.
+    /// The numbers that the smallest and the largest coordinate of a box are compared with: s + h and s − h.
     from: [V; 2],
     /// The reciprocal 1/d, in the unit of d.
     inverse: V,
@@ -86,7 +86,7 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
         for i in 0..V::DIM {
             let inverse = self.inverse.get(i);
             let sides = (after.get(i) * inverse, before.get(i) * inverse);
-            // Where d is zero, the quotient is ±∞ by the side of the plane, and NaN on it, which is then passed over.
+            // If d is zero, the quotient is ±∞ by the side of the plane, and NaN on it, which then changes nothing.
             let (begins, ends) = if inverse.is_sign_negative() { (sides.1, sides.0) } else { sides };
             entry = if begins > entry { begins } else { entry };
             exit = if ends < exit { ends } else { exit };
@@ -98,8 +98,8 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
         }
     }
 
-    /// Coordinates are rounded so that the box begins earlier and ends later, the end is put off by all that rounds,
-    /// and the limit has room for what rounds the beginning.
+    /// Coordinates are rounded so that the box begins earlier and ends later, the end is later by all rounding, and the
+    /// limit has room for the rounding of the beginning.
     #[inline]
     fn coarse(&self, frame: &Frame<V>) -> CoarseSweptBox<V> {
         let mut coarse = CoarseSweptBox {
@@ -112,7 +112,7 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
         let largest = f64::from(f32::MAX);
         for i in 0..V::DIM {
             let inverse = self.inverse.get(i).as_f64();
-            // Along a plane a box never ends where it has begun, and begins at the end of all numbers where it has not.
+            // Along a plane a box that has begun never ends, and one that has not begins at the largest number.
             let (begin, end) = (inverse.clamp(-largest, largest), inverse * (1.0 + 2.0 * CoarseUnit::ROUNDING));
             coarse.inverse[i] = [begin, end].map(|inverse| Vec4::splat(inverse as f32));
             let first = usize::from(inverse.is_sign_negative());
@@ -128,11 +128,11 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
 /// is between 1 and 2.
 #[derive(Clone, Copy, Debug)]
 pub struct CoarseSweptBox<V> {
-    /// What the side of a box that is met first is compared with, and what the other.
+    /// The numbers that the near side of a box is compared with, and the far one.
     from: [[Vec4; 2]; 3],
-    /// For where a box begins, and for where it ends.
+    /// For the beginning of a box, and for its end.
     inverse: [[Vec4; 2]; 3],
-    /// The side of a box that is met first.
+    /// The near side of a box.
     first: [usize; 3],
     unit: CoarseUnit,
     space: PhantomData<V>,
@@ -152,7 +152,7 @@ impl<V: Vector> CoarseBound for CoarseSweptBox<V> {
         let (mut entry, mut exit) = (Vec4::ZERO, Vec4::INFINITY);
         for i in 0..V::DIM {
             let (near, far) = (self.first[i], 1 - self.first[i]);
-            // What is NaN, on a plane along the direction, is outside, and may be passed over or not.
+            // NaN, on a plane along the direction, is outside, and may be ignored or not.
             entry = ((boxes.side(i, near) - self.from[i][0]) * self.inverse[i][0]).max(entry);
             exit = ((boxes.side(i, far) - self.from[i][1]) * self.inverse[i][1]).min(exit);
         }
@@ -167,8 +167,7 @@ impl<V: Vector> CoarseBound for CoarseSweptBox<V> {
 
 /// A lower bound of the distance between two boxes.
 ///
-/// Coordinate by coordinate the gap is what one begins after the other ends, or 0; the distance is the length of the
-/// gaps.
+/// In each coordinate the gap is how far one begins after the other ends, or 0; the distance is the length of the gaps.
 #[derive(Clone, Copy, Debug)]
 pub struct BoxDistance<V: Vector> {
     of: Aabb<V>,
@@ -189,8 +188,8 @@ impl<V: Vector> Bound<V> for BoxDistance<V> {
     #[inline(always)]
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
         let gaps = (around.min - self.of.max).max(self.of.min - around.max).max(V::ZERO);
-        // Whether boxes overlap nobody can predict, and so it is no branch: only a gap whose square leaves the range
-        // takes another way.
+        // Whether boxes overlap cannot be predicted, so there is no branch on it: only a gap whose square is out of
+        // range takes another way.
         let squared = gaps.length_squared();
         let is_plain = is_comfortable(squared) | (gaps.max_element() == V::Scalar::ZERO);
         let length = if is_plain { squared.sqrt() } else { gaps.norm() };
@@ -208,7 +207,7 @@ impl<V: Vector> Bound<V> for BoxDistance<V> {
 /// A [`BoxDistance`] in the frame of a tree: the bounds are the squares of distances, and all rounding is in the limit.
 #[derive(Clone, Copy, Debug)]
 pub struct CoarseBoxDistance<V> {
-    /// By coordinate, the smallest and the largest.
+    /// For each coordinate, the smallest and the largest.
     of: [[Vec4; 2]; 3],
     unit: CoarseUnit,
     space: PhantomData<V>,

@@ -1,9 +1,9 @@
 //! Building by the surface area heuristic, in bins.
 //!
-//! A question meets a box about as often as its surface is large, so that a split into two parts costs about n₁·area₁ +
-//! n₂·area₂. Of the splits between 16 bins of the centres along the longest axis the cheapest is taken, and a node's
-//! range is split three times for its four children (I. Wald, *On fast construction of SAH-based bounding volume
-//! hierarchies*, 2007).
+//! A question meets a box with a probability about proportional to its surface, so that a split into two parts costs
+//! about n₁·area₁ + n₂·area₂. Among the splits between 16 bins of the centres along the longest axis the cheapest is
+//! taken, and a node's range is split three times for its four children (I. Wald, *On fast construction of SAH-based
+//! bounding volume hierarchies*, 2007).
 
 use alloc::vec::Vec;
 
@@ -30,7 +30,7 @@ impl Entry {
     }
 }
 
-/// A part of the entries, with the box around it and that around the centres.
+/// A part of the entries, with the box around them and the box around their centres.
 #[derive(Clone, Copy)]
 struct Range {
     start: usize,
@@ -44,7 +44,7 @@ impl Range {
     }
 }
 
-/// The box around some entries, and that around their (twice) centres.
+/// The box around some entries, and the box around their (twice) centres.
 #[derive(Clone, Copy)]
 struct Extent {
     around: Aabb<Vec3A>,
@@ -78,7 +78,7 @@ compiled_once! {
     }
 }
 
-/// A range that a node is to be made of, in that place, and the levels it may take.
+/// A range to be made into a node, the place of the node, and the levels it may take.
 struct Task {
     node: usize,
     range: Range,
@@ -96,7 +96,7 @@ impl<V: Vector> Bvh<V> {
             nodes: alloc::vec![Node::empty(Slot::NONE)],
             frame: Frame::empty(),
             boxes: boxes.to_vec(),
-            // Every item is in the tree from here on; where is to be found out.
+            // Every item is in the tree from here on; its place is still to be found.
             slots: alloc::vec![Slot::new(0, 0); boxes.len()],
             dead: 0,
             built_cost: 0.0,
@@ -123,7 +123,7 @@ impl<V: Vector> Bvh<V> {
         self.built_cost = self.cost();
     }
 
-    /// Makes the entries all there is under node `root`; its place in its parent stays.
+    /// Makes these the only entries under node `root`; its place in its parent stays.
     pub(super) fn build(&mut self, root: usize, mut entries: Vec<Entry>) {
         self.nodes[root] = Node { count: entries.len() as u32, ..Node::empty(self.nodes[root].parent) };
         let range = Range { start: 0, end: entries.len(), extent: Extent::of(&entries) };
@@ -147,8 +147,8 @@ impl<V: Vector> Bvh<V> {
         }
     }
 
-    /// How much work a random question is expected to be: the area of all inner boxes by that of the whole. Not a
-    /// number where areas over- or underflow.
+    /// The expected work of a random question: the area of all inner boxes divided by that of the whole. NaN if areas
+    /// over- or underflow.
     pub(super) fn cost(&self) -> f64 {
         let of_nodes = |node: &Node| {
             let areas = areas::<V>(&node.boxes).to_array().into_iter().zip(node.children);
@@ -178,10 +178,10 @@ fn allowed_levels(count: usize) -> u32 {
     least + least / 2 + 2
 }
 
-/// Up to four parts of the range, of which there is at least one unless it is empty.
+/// Up to four parts of the range, at least one unless it is empty.
 ///
-/// The part with the largest surface is split first. Where the levels that remain are only just enough, the largest
-/// part is split in halves instead: a quarter of the items needs a level less.
+/// The part with the largest surface is split first. If the remaining levels are only just enough, the largest part is
+/// split in halves instead: a quarter of the items needs a level less.
 fn split_in_four<V: Vector>(entries: &mut [Entry], range: Range, levels: u32) -> ([Range; WIDTH], usize) {
     let mut parts = [range; WIDTH];
     if range.len() <= WIDTH {
@@ -209,7 +209,7 @@ fn split_in_four<V: Vector>(entries: &mut [Entry], range: Range, levels: u32) ->
     (parts, WIDTH)
 }
 
-/// Orders the entries of a range, of which there are two or more, so that those of its first part come first.
+/// Orders two or more entries of a range so that those of its first part come first.
 fn split<V: Vector>(entries: &mut [Entry], range: &Range, halves: bool) -> [Range; 2] {
     let &Range { start, end, extent: Extent { centers, .. } } = range;
     let entries = &mut entries[start..end];
@@ -237,7 +237,7 @@ struct Bins {
     axis: usize,
     low: f32,
     per_bin: f32,
-    /// Of few entries, as many as there are.
+    /// For few entries, their number.
     count: usize,
 }
 
@@ -254,8 +254,8 @@ impl Bins {
         (bin as usize).min(self.count - 1)
     }
 
-    /// The last bin of the first part of the cheapest split, and the extents of both parts; `None` where no split is
-    /// cheaper than any other.
+    /// The last bin of the first part of the cheapest split, and the extents of both parts; `None` if no split is
+    /// cheaper than the others.
     fn cheapest_split<V: Vector>(&self, entries: &[Entry]) -> Option<(usize, [Extent; 2])> {
         let (mut counts, mut extents) = ([0_u32; BINS], [Extent::EMPTY; BINS]);
         for entry in entries {
@@ -264,7 +264,7 @@ impl Bins {
             extents[bin] = extents[bin].with(entry);
         }
         let (counts, extents) = (&counts[..self.count], &extents[..self.count]);
-        // What the part behind each split costs, from the end; then what the part before it does.
+        // The cost of the part behind each split, from the end; then that of the part before it.
         let mut behind = [0.0; BINS];
         let (mut count, mut around) = (0, Extent::NOTHING);
         for bin in (1..counts.len()).rev() {
@@ -285,8 +285,8 @@ impl Bins {
     }
 }
 
-/// Brings the entries that `first` picks to the front, and returns their number. Every one is exchanged, which takes
-/// no branch, since no processor can predict which are picked.
+/// Moves the entries that `first` picks to the front, and returns their number. Every entry is exchanged, without a
+/// branch, because no processor can predict which are picked.
 #[inline(always)]
 fn partition<T>(entries: &mut [T], first: impl Fn(&T) -> bool) -> usize {
     let mut picked = 0;

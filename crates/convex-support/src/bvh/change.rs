@@ -1,13 +1,13 @@
-//! Items that are moved, added and removed.
+//! Moving, adding and removing items.
 //!
 //! A new item goes down to the child whose box it enlarges least and takes the first free place, or shares an item's.
-//! That alone can grow a chain (items inserted in order do), so that the rule of scapegoat trees is added (Galperin and
+//! That alone can grow a chain (items inserted in order do), so the rule of scapegoat trees is added (Galperin and
 //! Rivest 1993): after an insertion `h` levels below a node with `n` items,
 //!
 //! > h ≤ 2·⌈log₄ n⌉ + 4,
 //!
-//! or the lowest node for which it does not hold is built anew, with at most 1.5·⌈log₄ n⌉ + 2 levels. So the depth is
-//! at most 34 for the 2³⁰ items that a tree can hold, and rebuilding costs a constant number of levels' work for each
+//! or the lowest node for which it does not hold is rebuilt, with at most 1.5·⌈log₄ n⌉ + 2 levels. So the depth is at
+//! most 34 for the 2³⁰ items that a tree can hold, and rebuilding costs a constant number of levels' work for each
 //! insertion in the long run.
 
 use alloc::vec::Vec;
@@ -33,7 +33,7 @@ impl<V: Vector> Bvh<V> {
                 *around = box_of(item);
             }
         }
-        // Children come after their parents, so that a node is complete before its box is wanted.
+        // Children come after their parents, so that a node is complete before its box is needed.
         for index in (0..self.nodes.len()).rev() {
             let node = &mut self.nodes[index];
             if node.parent == Slot::DEAD {
@@ -86,7 +86,7 @@ impl<V: Vector> Bvh<V> {
         self.boxes[item] = around;
         let seen = self.frame.outwards(&around);
         let mut node = 0;
-        // The depth is bounded; this says so.
+        // The depth is bounded, and so is this loop.
         for _ in 0..=MAX_DEPTH {
             let lane = self.lane_for(node, &seen);
             let slot = Slot::new(node, lane);
@@ -131,7 +131,7 @@ impl<V: Vector> Bvh<V> {
         let mut changed = node;
         let parent = self.nodes[node].parent;
         let mut rest = self.nodes[node].children.into_iter().enumerate().filter(|(_, link)| *link != Link::NONE);
-        // A node of one child gives its place to the child.
+        // A node with one child gives its place to the child.
         if let (Some((lane, only)), None, true) = (rest.next(), rest.next(), parent != Slot::NONE) {
             self.put(parent, only, self.nodes[node].boxes.get(lane));
             self.nodes[node].parent = Slot::DEAD;
@@ -143,7 +143,7 @@ impl<V: Vector> Bvh<V> {
         true
     }
 
-    /// The place for a box under a node: one that is free, or of the child that grows least.
+    /// The place for a box under a node: a free one, or that of the child that grows least.
     fn lane_for(&self, node: usize, around: &Aabb<Vec3A>) -> usize {
         let Node { children, boxes, .. } = &self.nodes[node];
         if let Some(free) = children.iter().position(|link| *link == Link::NONE) {
@@ -163,7 +163,7 @@ impl<V: Vector> Bvh<V> {
         best.1
     }
 
-    /// Puts a child into a place.
+    /// Puts a child in a place.
     fn put(&mut self, slot: Slot, link: Link, around: Aabb<Vec3A>) {
         let node = &mut self.nodes[slot.node()];
         node.children[slot.lane()] = link;
@@ -175,7 +175,7 @@ impl<V: Vector> Bvh<V> {
         }
     }
 
-    /// Brings the boxes above a node up to date.
+    /// Updates the boxes above a node.
     fn tell_parents(&mut self, mut node: usize) {
         while self.nodes[node].parent != Slot::NONE {
             let (around, parent) = (self.nodes[node].boxes.union(), self.nodes[node].parent);
@@ -188,7 +188,7 @@ impl<V: Vector> Bvh<V> {
         }
     }
 
-    /// Counts a new item under a node and all above it, and builds anew what has become too deep for what it holds.
+    /// Counts a new item under a node and all above it, and rebuilds a part that has become too deep.
     fn count_in(&mut self, node: usize) {
         let (mut above, mut height, mut lopsided) = (Slot::new(node, 0), 0, None);
         while above != Slot::NONE {
@@ -208,7 +208,7 @@ impl<V: Vector> Bvh<V> {
         }
     }
 
-    /// The items under a node with their boxes. All nodes under it are dead from then on.
+    /// The items under a node with their boxes. All nodes under it are then dead.
     fn entries_under(&mut self, root: usize) -> Vec<Entry> {
         let mut entries = Vec::with_capacity(self.nodes[root].count as usize);
         let mut below = alloc::vec![root];
@@ -229,7 +229,7 @@ impl<V: Vector> Bvh<V> {
         entries
     }
 
-    /// Builds anew, in a frame that fits, where a box has come that is far from all others.
+    /// Rebuilds the tree in a frame that fits, if a box is far from all others.
     fn rebuild_if_beyond(&mut self, around: &Aabb<V>) {
         if self.frame.is_beyond(around) {
             self.rebuild();

@@ -5,36 +5,35 @@ use num_traits::Float as _;
 use crate::glam::Vec3A;
 use crate::{Aabb, Scalar, Vector};
 
-/// The power of two that the farthest coordinate is seen as: large enough that squares of what is small beside it do
-/// not underflow, and small enough that squares of what is far beyond do not overflow.
+/// The power of two to which the farthest coordinate is scaled: large enough that squares of much smaller lengths do
+/// not underflow, and small enough that squares of much larger ones do not overflow.
 const REACH: f64 = (1_u64 << 40) as f64;
 
-/// How many times as far as the boxes that a frame was chosen for others may lie, before another should be: squares
-/// of what is as far as that do not overflow, and boxes that come ever farther away, each twice as far as the last
-/// one, do not have the tree built anew for each.
+/// How many times as far as the boxes of a frame others may lie before another frame should be chosen: squares of such
+/// lengths do not overflow, and if boxes come ever farther away, each twice as far as the last one, the tree is not
+/// rebuilt for each.
 const BEYOND: f64 = (1_u64 << 16) as f64;
 
-/// Where the nodes of a tree are seen from: a coordinate `x` is `(x − origin)·2ᵏ` in single precision, rounded
-/// *outwards*.
+/// The coordinates of the nodes of a tree: a coordinate `x` is `(x − origin)·2ᵏ` in single precision,
+/// rounded *outwards*.
 ///
-/// A box as it is seen so contains the box that it is of, and is larger by at most 2⁻²² of its distance from the origin
-/// on each side. The origin is in the midst of the boxes, half of which are on each side of it, so that a few that are
-/// far away do not matter.
+/// A box in these coordinates contains the original box, and is larger by at most 2⁻²² of its distance from the origin
+/// on each side. The origin is the median of the boxes, so that a few that are far away do not matter.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<V: Vector> {
     origin: V,
     per_unit: f64,
-    /// How far from the origin boxes are expected, in the world's unit.
+    /// The largest distance of boxes from the origin, in the world's unit.
     reach: f64,
 }
 
 impl<V: Vector> Frame<V> {
-    /// The frame of a tree without boxes, beyond which is everything.
+    /// The frame of a tree without boxes; every box is beyond it.
     pub(super) fn empty() -> Self {
         Self { origin: V::ZERO, per_unit: 1.0, reach: 0.0 }
     }
 
-    /// One for boxes of which there are `count`.
+    /// The frame for `count` boxes.
     pub(super) fn of(count: usize, boxes: impl Iterator<Item = Aabb<V>> + Clone) -> Self {
         const SAMPLE: usize = 63;
         let step = count.div_ceil(SAMPLE).max(1);
@@ -54,31 +53,31 @@ impl<V: Vector> Frame<V> {
         Self { origin, per_unit: power_of_two_near(REACH / power_of_two_near(reach)), reach }
     }
 
-    /// Whether a box is so far from the origin that another frame is worth while.
+    /// Whether a box is so far from the origin that another frame is worthwhile.
     pub(super) fn is_beyond(&self, around: &Aabb<V>) -> bool {
         distance(self.origin, around) > BEYOND * self.reach
     }
 
-    /// The same of a box as it is seen.
+    /// The same for a box in this frame.
     pub(super) fn sees_beyond(&self, around: &Aabb<Vec3A>) -> bool {
         let reach = f64::from(around.min.abs().max(around.max.abs()).max_element());
         reach > BEYOND * self.reach * self.per_unit + 1.0
     }
 
-    /// What boxes are seen from.
+    /// The origin of the coordinates.
     #[must_use]
     pub fn origin(&self) -> V {
         self.origin
     }
 
-    /// At most the coordinate `x` as it is seen.
+    /// At most the coordinate `x` in this frame.
     #[inline(always)]
     #[must_use]
     pub fn down(&self, axis: usize, x: V::Scalar) -> f32 {
         down(self.seen(axis, x))
     }
 
-    /// At least the coordinate `x` as it is seen.
+    /// At least the coordinate `x` in this frame.
     #[inline(always)]
     #[must_use]
     pub fn up(&self, axis: usize, x: V::Scalar) -> f32 {
@@ -90,13 +89,13 @@ impl<V: Vector> Frame<V> {
         (x.as_f64() - self.origin.get(axis).as_f64()) * self.per_unit
     }
 
-    /// The unit of lengths as they are seen.
+    /// The unit of lengths in this frame.
     #[must_use]
     pub fn unit(&self) -> CoarseUnit {
         CoarseUnit::new::<V::Scalar>(self.per_unit)
     }
 
-    /// A box as it is seen; in the plane, about zero of the third coordinate.
+    /// A box in this frame; in the plane, about zero of the third coordinate.
     #[inline(always)]
     pub(super) fn outwards(&self, around: &Aabb<V>) -> Aabb<Vec3A> {
         let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
@@ -108,10 +107,10 @@ impl<V: Vector> Frame<V> {
         Aabb { min: step_down(min), max: -step_down(max) }
     }
 
-    /// The same box as this frame sees it, and not another.
+    /// A box of another frame in this one.
     pub(super) fn outwards_from(&self, other: &Self, around: &Aabb<Vec3A>) -> Aabb<Vec3A> {
-        // What is computed in double precision is nothing to a step of single precision, of the other's coordinate or
-        // of this one.
+        // The rounding of double precision is small against a step of single precision, of the other frame's coordinate
+        // or of this one.
         let at = |axis: usize, c: f32| {
             let world = f64::from(c) / other.per_unit + other.origin.get(axis).as_f64();
             (world - self.origin.get(axis).as_f64()) * self.per_unit
@@ -130,12 +129,12 @@ impl<V: Vector> Frame<V> {
     }
 }
 
-/// The greatest coordinate of a box from a point.
+/// The greatest coordinate of a box relative to a point.
 fn distance<V: Vector>(origin: V, around: &Aabb<V>) -> f64 {
     (around.max - origin).max(origin - around.min).max_element().as_f64()
 }
 
-/// At most `x`, by a few steps of single precision; what is too large for it is its largest number, and so is NaN.
+/// At most `x`, by a few steps of single precision; the largest number if `x` is larger or NaN.
 #[inline(always)]
 fn down(x: f64) -> f32 {
     let nearest = below_infinity(x);
@@ -149,8 +148,8 @@ fn below_infinity(x: f64) -> f32 {
     if nearest < f32::MAX { nearest } else { f32::MAX }
 }
 
-/// Of numbers of this size, one step at least, and at most two; of the smallest ones more. Rounding to the nearest
-/// moves `x` by half a step, and a difference by a whole number of steps not at all.
+/// At least one step between numbers of this size, and at most two; more for the smallest ones. Rounding to the nearest
+/// moves `x` by half a step, and a difference of a whole number of steps is exact.
 #[inline(always)]
 fn step<T: core::ops::Mul<f32, Output = T> + core::ops::Add<f32, Output = T>>(size: T) -> T {
     size * f32::EPSILON + f32::MIN_POSITIVE
@@ -162,9 +161,8 @@ fn up(x: f64) -> f32 {
     -down(-x)
 }
 
-/// The unit of [coarse bounds](super::CoarseBound), and what they may be wrong by: 64 ε of single precision, which is
-/// what rounds the few operations that they are made of and those of bounds that may be in single precision themselves;
-/// and a few of the smallest numbers.
+/// The unit of [coarse bounds](super::CoarseBound), and their largest error: 64 ε of single precision, for their few
+/// operations and those of bounds that may be in single precision themselves; and a few of the smallest numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct CoarseUnit {
     per_unit: f64,
@@ -172,10 +170,10 @@ pub struct CoarseUnit {
 }
 
 impl CoarseUnit {
-    /// Relative to a bound, by how much a coarse one may exceed it.
+    /// How much a coarse bound may exceed a bound, relative to it.
     pub const ROUNDING: f64 = 64.0 * f32::EPSILON as f64;
 
-    /// The unit, of which there are so many in one of the question's, which is computed in scalars of this kind.
+    /// The unit, given how many there are in one of the question's, which is computed in scalars of this kind.
     #[must_use]
     pub fn new<S: Scalar>(per_unit: f64) -> Self {
         Self { per_unit, least: 4.0 * S::min_positive_value().as_f64() * S::EPSILON.as_f64() }
@@ -194,8 +192,7 @@ impl CoarseUnit {
         down(x)
     }
 
-    /// What coarse bounds do not exceed if they are right to [`ROUNDING`](Self::ROUNDING) and stand for bounds of at
-    /// most `limit`.
+    /// The largest coarse bound, if right to [`ROUNDING`](Self::ROUNDING), for a bound of at most `limit`.
     #[inline]
     #[must_use]
     pub fn limit(&self, limit: f64) -> f32 {
@@ -215,13 +212,13 @@ impl CoarseUnit {
     }
 }
 
-/// At least a number, and finite: the largest number is as good as a larger one, and as NaN.
+/// At least a number, and finite: the largest number stands for larger ones, and for NaN.
 fn finite_up(limit: f64) -> f32 {
     if limit < f64::from(f32::MAX) { up(limit).min(f32::MAX) } else { f32::MAX }
 }
 
-/// The largest power of two that is not above a positive number, or the nearest that is an ordinary number; 1 for what
-/// is not positive or not finite.
+/// The largest power of two that is not above a positive number, or the nearest that is a normal number; 1 for numbers
+/// that are not positive or not finite.
 pub(super) fn power_of_two_near(x: f64) -> f64 {
     if !(x > 0.0 && x < f64::INFINITY) {
         return 1.0;

@@ -6,12 +6,12 @@ use crate::glam::{Vec3A, Vec4};
 /// The number of children of a node.
 pub const WIDTH: usize = 4;
 
-/// The boxes of a node's children as the tree's [frame](super::Frame) sees them, coordinate by coordinate and side by
-/// side, so that the same arithmetic on all four is one vector instruction. A place without a child has `min = ∞` and
-/// `max = −∞`.
+/// The boxes of a node's children in the tree's [frame](super::Frame), coordinate by coordinate and side by side, so
+/// that the same arithmetic on all four is one vector instruction. A place without a child has `min = ∞` and `max =
+/// −∞`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Boxes {
-    /// By coordinate, the smallest and the largest. Of boxes in the plane, the third is zero.
+    /// For each coordinate, the smallest and the largest. In the plane, the third is zero.
     planes: [[Vec4; 2]; 3],
 }
 
@@ -81,7 +81,7 @@ impl Boxes {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Link(u32);
 
-/// What a [`Link`] is.
+/// The kinds of a [`Link`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Child {
     None,
@@ -122,7 +122,7 @@ impl Link {
         (self.0 & !Self::ITEM) as usize
     }
 
-    /// The number of the node, if it is one that is not after `last`; else `last`.
+    /// The number of the node, if the link is one and not after `last`; else `last`.
     #[inline]
     pub(super) fn node_or(self, last: usize) -> usize {
         (self.0 as usize).min(last)
@@ -143,7 +143,7 @@ impl Link {
         u64::from(bound.to_bits()) << 32 | u64::from(self.0)
     }
 
-    /// The bound and the link that a number says.
+    /// The bound and the link in such a number.
     #[inline(always)]
     pub(super) fn with_bound(number: u64) -> (Self, f32) {
         (Self(number as u32), f32::from_bits((number >> 32) as u32))
@@ -186,7 +186,7 @@ impl Slot {
     }
 }
 
-/// A node: its children with their boxes, in two lines of the cache.
+/// A node: its children with their boxes, in two cache lines.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Node {

@@ -11,7 +11,7 @@ use super::search::{MAX_DEPTH, finite};
 use crate::glam::{Vec3A, Vec4, Vec4Swizzles as _};
 use crate::{Aabb, Scalar as _, Vector};
 
-/// Two nodes leave at most 16 pairs of children behind, and a node and an item 4, one of which is looked into next.
+/// Two nodes leave at most 16 pairs of children, and a node and an item 4, one of which is searched next.
 const STACK: usize = (WIDTH * WIDTH + WIDTH) * MAX_DEPTH;
 
 /// The pairs of items whose boxes are within a distance; found by [`visit`](Self::visit), in [pieces](Self::split) if
@@ -20,16 +20,16 @@ const STACK: usize = (WIDTH * WIDTH + WIDTH) * MAX_DEPTH;
 pub struct PairSearch<'t, V: Vector> {
     a: &'t Bvh<V>,
     b: &'t Bvh<V>,
-    /// Whether pairs of one tree are meant, each of which counts once.
+    /// Whether both trees are the same one, so that each pair counts once.
     same: bool,
     distance: V::Scalar,
-    /// At least the distance, as the trees see it.
+    /// At least the distance, in the frames of the trees.
     rooms: [f32; 2],
     start: Pair,
 }
 
 /// How many pairs of items are found before their own boxes are tested: one after the other and without a branch, so
-/// that those outside the caches are fetched together.
+/// that boxes outside the caches are fetched together.
 const BATCH: usize = 4 * WIDTH * WIDTH;
 
 /// A child of the first tree and one of the second.
@@ -54,7 +54,7 @@ impl<V: Vector> Bvh<V> {
         PairSearch { a: self, b: other, same: false, distance, rooms, start: (Link::ROOT, Link::ROOT) }
     }
 
-    /// The box of a child, which is not the root, as the tree sees it.
+    /// The box of a child, which is not the root, in the tree's frame.
     #[inline]
     fn seen(&self, child: Child) -> Aabb<Vec3A> {
         let slot = match child {
@@ -91,12 +91,12 @@ impl<'t, V: Vector> PairSearch<'t, V> {
                 count = 0;
             }
         }
-        // Whether it breaks off no longer matters.
+        // The search is over, so a break no longer matters.
         let _ = self.show(&found[..count], distance, &mut visit);
         looked
     }
 
-    /// Shows those of some pairs of items, at most a batch, whose own boxes are near. By coarse bounds, all are.
+    /// Visits those of some pairs of items, at most a batch, whose own boxes are near. By coarse bounds, all are.
     #[inline(always)]
     fn show(
         &self,
@@ -132,7 +132,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
         pieces.into_iter().map(|start| Self { start, ..self }).collect()
     }
 
-    /// Boxes that the first tree sees, as the second does.
+    /// Boxes of the first tree in the frame of the second.
     fn as_b_sees(&self, boxes: &Boxes) -> Boxes {
         let mut seen = *boxes;
         for lane in 0..WIDTH {
@@ -141,7 +141,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
         seen
     }
 
-    /// The pairs that a pair consists of and whose boxes are near, by coarse bounds. Not for two items.
+    /// The pairs of children of a pair whose boxes are near, by coarse bounds. Not for two items.
     #[inline(always)]
     fn expand(&self, (a, b): Pair, mut push: impl FnMut(Pair)) {
         match (a.child(), b.child()) {
@@ -166,8 +166,8 @@ impl<'t, V: Vector> PairSearch<'t, V> {
                     }
                 }
                 if is_one {
-                    // On top, so that each part is looked into on its own, in the order in which its nodes lie in
-                    // memory, before parts are compared.
+                    // On top, so that each part is searched by itself, in the order of its nodes in memory, before
+                    // parts are compared.
                     for link in first.children {
                         if let Child::Node(_) = link.child() {
                             push((link, link));
@@ -205,7 +205,7 @@ fn near<V: Vector>(around: &Aabb<Vec3A>, room: f32, node: &Node, mut push: impl 
     }
 }
 
-/// The pairs of boxes that are near each other: a bit for each, of which four are for the first of `a`.
+/// The pairs of boxes that are near each other: a bit for each, four for the first box of `a`.
 #[inline(always)]
 fn near_pairs<V: Vector>(a: &Boxes, b: &Boxes, room: f32) -> u32 {
     let b = grown(b, room);
@@ -213,8 +213,8 @@ fn near_pairs<V: Vector>(a: &Boxes, b: &Boxes, room: f32) -> u32 {
     (0..WIDTH).fold(0, |near, lane| near | are_near::<V>(&min[lane], &max[lane], &b) << (WIDTH * lane))
 }
 
-/// Of four points, coordinate by coordinate, each in all places of a vector. It stays in registers: what is written to
-/// memory number by number and read as a vector makes the processor wait.
+/// Coordinates of four points, each in all places of a vector. They stay in registers: a vector that was written to
+/// memory number by number makes the processor wait.
 #[inline(always)]
 fn by_lane(x: Vec4, y: Vec4, z: Vec4) -> [[Vec4; 3]; WIDTH] {
     [
@@ -225,7 +225,7 @@ fn by_lane(x: Vec4, y: Vec4, z: Vec4) -> [[Vec4; 3]; WIDTH] {
     ]
 }
 
-/// Boxes that are larger by this room. What is not above a sum without rounding is not above the rounded one.
+/// Boxes enlarged by this room. A number not above the exact sum is not above the rounded one.
 #[inline(always)]
 fn grown(boxes: &Boxes, room: f32) -> [[Vec4; 2]; 3] {
     let room = Vec4::splat(room);

@@ -9,16 +9,15 @@ use super::node::{Child, Link, Node, WIDTH};
 use crate::glam::Vec4;
 use crate::{Scalar, Vector};
 
-/// The greatest number of nodes from the root to an item; `change.rs` says why.
+/// The greatest number of nodes from the root to an item; `change.rs` derives it.
 pub(super) const MAX_DEPTH: usize = 36;
 
-/// A level leaves at most three children behind while the fourth is looked into; and of the lowest all four are
-/// written, near or not.
+/// A level leaves at most three children while the fourth is searched; and all four of the lowest level are stored,
+/// near or not.
 const STACK: usize = (WIDTH - 1) * (MAX_DEPTH + 1) + 1;
 
-/// The same where the next node is taken before the children of this one are put down. Then the children of a node end
-/// at most `2·WIDTH − 2` places above its own: they come after those of the node before it, one of which has been
-/// taken.
+/// The same if the next node is taken before the children of this one are stored. Then the children of a node end at
+/// most `2·WIDTH − 2` places above its own: they come after those of the node before it, one of which has been taken.
 const STACK_WITHIN: usize = 2 * (WIDTH - 1) * (MAX_DEPTH + 1) + 1;
 
 /// How many items are found before they are tested.
@@ -39,9 +38,9 @@ impl<V: Vector> Bvh<V> {
         let Some(mut limit) = finite(limit) else { return 0 };
         let coarse = question.coarse(&self.frame);
         let mut end = coarse_limit(&coarse, limit);
-        // What remains to be looked at, the least bound on top, and what is looked at next: of a node the least of its
-        // children, for whose order it need not wait. Places that are not read before they are written are all bits
-        // zero, which is soon done.
+        // The links still to be searched, the least bound on top, and the next one: the least child of a node, which
+        // need not wait for the order of the others. Places that are not read before they are written are all zero
+        // bits, which is fast.
         let mut pending = [0; STACK];
         let (mut next, mut top, mut nodes) = (Link::ROOT.after(0.0), 0, 0);
         loop {
@@ -85,7 +84,7 @@ impl<V: Vector> Bvh<V> {
     /// number of nodes that were tested.
     ///
     /// Nodes do not wait for one another: the next node is known before this one's children are, and is fetched
-    /// meanwhile; and no branch depends on which children are near, or what they are. Each is stored as both a node and
+    /// meanwhile; and no branch depends on which children are near, or on their kind. Each is stored as both a node and
     /// an item, and counts as one.
     pub fn within<B: Bound<V>>(
         &self,
@@ -96,7 +95,7 @@ impl<V: Vector> Bvh<V> {
         let Some(limit) = finite(limit) else { return 0 };
         let coarse = question.coarse(&self.frame);
         let end = Vec4::splat(coarse_limit(&coarse, limit));
-        // Of places, the first is of the root, and others are not read before they are written.
+        // The first place is that of the root; the others are not read before they are written.
         let (mut below, mut found) = ([Link::ROOT; STACK_WITHIN], [Link::NONE; BATCH]);
         let (mut top, mut count, mut nodes, mut next) = (1, 0, 0, None);
         while let Some(link) = next.or_else(|| pop(&below, &mut top)) {
@@ -118,17 +117,16 @@ impl<V: Vector> Bvh<V> {
                 count = 0;
             }
         }
-        // Whether it breaks off no longer matters.
+        // The search is over, so a break no longer matters.
         let _ = self.show(question, limit, &found[..count], &mut visit);
         nodes
     }
 
-    /// Loads something of the children of a node that are nodes, before it is known which of them the search goes into.
-    /// Otherwise, in a tree that does not fit into the caches, a search would spend much of its time waiting for the
-    /// next node.
+    /// Loads parts of the child nodes of a node before it is known which of them the search enters. Otherwise, in a
+    /// tree that does not fit into the caches, a search would spend much of its time waiting for the next node.
     ///
     /// The values are not used: `black_box` keeps the loads, one from either line of the cache. If a child is no node,
-    /// the last node is loaded instead, since a branch on the kind of the child would often be predicted wrongly.
+    /// the last node is loaded instead, because a branch on the kind of the child would often be predicted wrongly.
     #[inline(always)]
     fn fetch(&self, node: &Node) {
         let last = self.nodes.len() - 1;
@@ -152,29 +150,29 @@ impl<V: Vector> Bvh<V> {
     }
 }
 
-/// Takes what is on top.
+/// Takes the top element.
 #[inline(always)]
 fn pop(stack: &[Link], top: &mut usize) -> Option<Link> {
     *top = top.checked_sub(1)?;
     Some(stack[*top])
 }
 
-/// A limit that something can be within; infinity is as good as the largest number.
+/// A limit that bounds can be within; infinity counts as the largest number.
 #[inline]
 pub(super) fn finite<S: Scalar>(limit: S) -> Option<S> {
     (limit >= S::ZERO).then(|| limit.min(S::max_value()))
 }
 
-/// The coarse limit for a limit. A bound that is the largest number may stand for a larger one.
+/// The coarse limit for a limit. A bound equal to the largest number may stand for a larger one.
 #[inline]
 fn coarse_limit<S: Scalar>(coarse: &impl CoarseBound, limit: S) -> f32 {
     coarse.limit(if limit < S::max_value() { limit.as_f64() } else { f64::INFINITY })
 }
 
-/// The children with their bounds in descending order, of which those that the bits of `near` leave out come last; and
-/// the least of all, which is known before their order is.
+/// The children with their bounds in descending order, those without a bit in `near` last; and the least of all, which
+/// is known before their order is.
 ///
-/// A network of five exchanges, none of which branches: no processor can predict which of two is less.
+/// A network of five exchanges without a branch: no processor can predict which of two is less.
 #[inline(always)]
 fn sorted(near: u32, children: [Link; WIDTH], bounds: [f32; WIDTH]) -> ([u64; WIDTH], u64) {
     let keys: [u64; WIDTH] = core::array::from_fn(|lane| children[lane].after(bounds[lane]));
