@@ -1,30 +1,30 @@
-//! Upper bounds on magnitudes, which rounding must not bring below what they bound.
+//! Upper bounds on magnitudes, which rounding must not reduce.
 //!
-//! Bounds are sums of products of non-negative numbers. A dozen of such operations lose a dozen halves of `ε` at most,
-//! which [`raised`] makes up for once at the end, unless a product underflows, which [`product`] makes up for at once.
-//! What is exactly zero stays so.
+//! Bounds are sums of products of non-negative numbers. A dozen such operations lose a dozen halves of `ε` at most, for
+//! which [`raised`] compensates once at the end. A product that underflows is the exception; [`product`] compensates
+//! for it at once. Exact zeros stay zero.
 
 use crate::{Matrix, Scalar, Vector};
 
-/// The smallest positive number: what a product or quotient loses at most where it is subnormal.
+/// The smallest positive number: the largest error of a subnormal product or quotient.
 #[inline]
 pub fn least<S: Scalar>() -> S {
     S::min_positive_value() * S::EPSILON
 }
 
-/// A bound on the product of two magnitudes, but for its relative rounding.
+/// A bound on the product of two magnitudes, except for its relative rounding.
 #[inline]
 pub fn product<S: Scalar>(a: S, b: S) -> S {
     if a == S::ZERO || b == S::ZERO { S::ZERO } else { a * b + least::<S>() }
 }
 
-/// `count` half units in the last place of a number of at most the given magnitude: what so many roundings lose of it.
+/// `count` half units in the last place of a number of at most the given magnitude: the error of so many roundings.
 #[inline]
 pub fn roundings<S: Scalar>(count: f64, magnitude: S) -> S {
     product(S::from_f64(0.5 * count) * S::EPSILON, magnitude)
 }
 
-/// [`roundings`] coordinate by coordinate.
+/// [`roundings`] for each coordinate.
 #[inline]
 pub fn roundings_of<V: Vector>(count: f64, magnitudes: V) -> V {
     magnitudes * (V::Scalar::from_f64(0.5 * count) * V::Scalar::EPSILON) + least_of(magnitudes)
@@ -50,14 +50,14 @@ pub fn raised<S: Scalar>(bound: S) -> S {
     bound + roundings(64.0, bound)
 }
 
-/// [`raised`] coordinate by coordinate.
+/// [`raised`] for each coordinate.
 #[inline]
 pub fn raised_vector<V: Vector>(bounds: V) -> V {
     bounds + roundings_of(64.0, bounds)
 }
 
-/// The smallest positive number where a coordinate of `magnitudes` is not zero: no other number is less, so that it is
-/// their minimum.
+/// The smallest positive number for each coordinate of `magnitudes` that is not zero: no other number is less, so that
+/// it is their minimum.
 #[inline]
 fn least_of<V: Vector>(magnitudes: V) -> V {
     magnitudes.min(V::splat(least()))

@@ -4,15 +4,15 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::twofold::{two_product, two_sum};
 
-/// What an operation on numbers of two parts loses at most, as a part of its result: a sum `2⁻¹⁰³`, a product or a
+/// The largest error of an operation on numbers of two parts, relative to its result: a sum `2⁻¹⁰³`, a product or a
 /// root `2⁻¹⁰⁰`, a quotient `2⁻⁹⁹` (Joldes, Muller and Popescu, *Tight and rigorous error bounds for basic building
-/// blocks of double-word arithmetic*, 2017). A product may underflow beside that.
+/// blocks of double-word arithmetic*, 2017). A product may also underflow.
 const LOST: f64 = f64::EPSILON * f64::EPSILON * 64.0;
 
-/// What bounds on errors are raised by, since they are rounded themselves.
+/// The factor by which bounds on errors are raised, because they are rounded themselves.
 const RAISED: f64 = 1.0 + 16.0 * f64::EPSILON;
 
-/// The number `high + low`, which is wrong by `error` at most.
+/// The number `high + low`, with an error of at most `error`.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded {
     high: f64,
@@ -33,11 +33,11 @@ impl Bounded {
         Self { high, low, error: (error + LOST * high.abs()) * RAISED }
     }
 
-    /// Numbers that it is certainly not less and not greater than.
+    /// Numbers that it is certainly not below and not above.
     #[must_use]
     pub fn bounds(self) -> [f64; 2] {
         let wide = self.error + self.low.abs() + f64::EPSILON * self.high.abs();
-        // Where the low part and the error are less than half a unit in the last place, the next numbers are bounds.
+        // If the low part and the error are less than half a unit in the last place, the next numbers are bounds.
         if wide.is_finite() { [self.high - wide, self.high + wide] } else { [f64::NEG_INFINITY, f64::INFINITY] }
     }
 
@@ -123,7 +123,7 @@ impl Div for Bounded {
         let second = (rest.high + rest.low) / other.high;
         let least = (other.high.abs() - other.low.abs() - other.error) * (1.0 - 4.0 * f64::EPSILON);
         let error = (self.error + (first.abs() + second.abs()) * other.error) / least + f64::MIN_POSITIVE;
-        // An error as large as the number that is divided by leaves nothing known.
+        // An error as large as the divisor leaves the quotient unknown.
         Self::new(first, second, if least > 0.0 { error } else { f64::INFINITY })
     }
 }

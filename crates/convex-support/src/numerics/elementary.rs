@@ -1,11 +1,10 @@
 //! Functions that every platform's mathematical library rounds in its own way, by one implementation for all: that of
-//! the libm crate, which adds, multiplies, divides and takes roots in a fixed order, so that its results are the same
-//! bits on every machine.
+//! the libm crate. It adds, multiplies, divides and takes roots in a fixed order, so that its results are the same bits
+//! on every machine.
 //!
-//! It is a translation of musl's functions, most of them FreeBSD's and before that Sun's, whose sources derive for each
-//! of those used here that it is wrong by less than one unit in the last place. In single precision they are computed
-//! in double and rounded once. `clippy.toml` keeps those of the standard library and of num-traits out of the
-//! libraries.
+//! It is a translation of musl's functions, most of them FreeBSD's and before that Sun's, whose sources derive an error
+//! of less than one unit in the last place for each of those used here. In single precision they are computed in double
+//! and rounded once. `clippy.toml` forbids the libraries to call those of the standard library and of num-traits.
 
 use crate::Scalar;
 
@@ -46,7 +45,7 @@ pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
 
-/// `2ⁿ`, exactly where a number of this type is that.
+/// `2ⁿ`, exact if a number of this type is equal to it.
 #[inline]
 pub fn power_of_two<S: Scalar>(n: i32) -> S {
     S::from_f64(libm::ldexp(1.0, n))
@@ -56,8 +55,8 @@ pub fn power_of_two<S: Scalar>(n: i32) -> S {
 mod tests {
     use super::*;
 
-    /// Of functions that are right to less than a unit in the last place, two differ by no more than two; a wrong one
-    /// does by many.
+    /// Two functions with errors of less than a unit in the last place differ by no more than two; a wrong one differs
+    /// by many.
     #[test]
     fn the_standard_library_says_the_same_but_for_rounding() {
         let mut x: f64 = 1e-3;

@@ -21,12 +21,12 @@ const MAX_SWEEPS: usize = 40;
 /// Axes of the leading `n`×`n` block of `x`, symmetric up to relative rounding errors of `epsilon`.
 ///
 /// First `X = G·Gᵀ` by Cholesky's method, always pivoting on the largest remaining diagonal entry, so that column `k`
-/// of `G` is what is left of the pivot column over the root of the pivot. A thin ellipsoid turned out of the coordinate
-/// axes has its long axis in the last digits of the entries, where pivots cancel: they are kept to twice the digits, so
-/// that the matrix is taken at its word and is refused only if, as given, it is not positive definite. Then rotations
-/// of pairs of columns make them orthogonal, which leaves `G·Gᵀ` as it is; in the end the columns are `√λᵢ·vᵢ`. Unlike
-/// the QR method this finds small eigenvalues to high relative accuracy (Demmel and Veselić, *Jacobi's method is more
-/// accurate than QR*, 1992).
+/// of `G` is the rest of the pivot column over the root of the pivot. A thin ellipsoid turned out of the coordinate
+/// axes has its long axis in the last digits of the entries, where pivots cancel. So they are kept to twice the digits:
+/// the matrix counts as given, and is refused only if it is not positive definite. Then rotations of pairs of columns
+/// make them orthogonal, which leaves `G·Gᵀ` as it is; in the end the columns are `√λᵢ·vᵢ`. Unlike the QR method this
+/// finds small eigenvalues to high relative accuracy (Demmel and Veselić, *Jacobi's method is more accurate than
+/// QR*, 1992).
 pub fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, InvalidShape> {
     // In units of an even power of two near the largest entry, neither products nor roots leave the range of numbers.
     let root = power_of_two_below(x.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs())).sqrt());
@@ -89,7 +89,7 @@ pub fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, Invali
     Ok(Axes { directions, roots: lengths.map(|length| length * root) })
 }
 
-/// Rotates columns `i` and `j` of `g` within their plane until they are orthogonal; says whether it had to.
+/// Rotates columns `i` and `j` of `g` within their plane until they are orthogonal. Returns whether they were not.
 fn orthogonalise(g: &mut [[f64; 3]; 3], i: usize, j: usize) -> bool {
     let (a, b, c) = (dot(g[i], g[i]), dot(g[j], g[j]), dot(g[i], g[j]));
     if c.abs() <= f64::EPSILON * (a * b).sqrt() {

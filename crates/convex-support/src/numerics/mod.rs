@@ -1,4 +1,4 @@
-//! Arithmetic that the crates of this workspace share. It is no part of the interface: it may change with any version.
+//! Arithmetic shared by the crates of this workspace. It is no part of the interface: it may change with any version.
 
 pub mod bound;
 pub mod bounded;

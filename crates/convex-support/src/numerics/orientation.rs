@@ -2,16 +2,16 @@
 //! fast robust geometric predicates*, 1997).
 //!
 //! Both determinants are right in sign, and in value to half of it, for all points whose coordinates are finite and
-//! whose products neither over- nor underflow. Plain numbers tell the sign where the determinant is larger than what
-//! they can lose, and for a volume so do numbers of twice the precision. What is open then is added up without
-//! rounding, term by term in loops, which are a tenth of the machine code of Shewchuk's last steps.
+//! whose products neither over- nor underflow. Plain numbers determine the sign if the determinant is larger than their
+//! rounding, and for a volume so do numbers of twice the precision. The rest are added up without rounding, term by
+//! term in loops, with a tenth of the machine code of Shewchuk's last steps.
 
 use super::twofold::{two_product, two_sum};
 
 /// Half the distance from 1 to the next number.
 const ROUNDING: f64 = f64::EPSILON / 2.0;
 
-/// Twice the area of a triangle, positive where its corners are counterclockwise.
+/// Twice the area of a triangle, positive if its corners are counterclockwise.
 #[inline]
 #[must_use]
 pub fn twice_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
@@ -22,13 +22,13 @@ pub fn twice_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
     if determinant.abs() > lost { determinant } else { exact_twice_area(a, b, c) }
 }
 
-/// Six times the volume of a tetrahedron, positive where `a`, `b` and `c` are counterclockwise as seen from `d`.
+/// Six times the volume of a tetrahedron, positive if `a`, `b` and `c` are counterclockwise as seen from `d`.
 #[inline]
 #[must_use]
 pub fn six_volumes([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
     let from = |p: [f64; 3]| (p[0] - d[0], p[1] - d[1], p[2] - d[2]);
     let ((ux, uy, uz), (vx, vy, vz), (wx, wy, wz)) = (from(a), from(b), from(c));
-    // By the cross product of the last two, which is away from `d` where they are counterclockwise.
+    // By the cross product of the last two, which points away from `d` if they are counterclockwise.
     let (vy_wz, vz_wy) = (vy * wz, vz * wy);
     let (vz_wx, vx_wz) = (vz * wx, vx * wz);
     let (vx_wy, vy_wx) = (vx * wy, vy * wx);
@@ -53,12 +53,12 @@ fn exact_twice_area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     sum.rounded()
 }
 
-/// The same where plain numbers leave the sign open.
+/// The volume if plain numbers leave its sign open.
 ///
-/// Every difference is `h + l` with `|l| ≤ ε·|h|`. To the determinant of the `h`, as products and sums leave it, all
-/// terms of the first order in ε are added: what each product and each sum loses, and what one `l` makes of it. The
-/// terms with two `l` are at most ε times these, of which there are 30, so that less than `40·ε` of the sum of their
-/// magnitudes is missing; and nothing where they are zero.
+/// Every difference is `h + l` with `|l| ≤ ε·|h|`. To the rounded determinant of the `h`, all terms of the first order
+/// in ε are added: the rounding error of each product and each sum, and the terms with one `l`. The terms with two `l`
+/// are at most ε times these, of which there are 30, so that less than `40·ε` of the sum of their magnitudes is
+/// missing; and nothing if they are zero.
 #[cold]
 #[inline(never)]
 fn exact_six_volumes([a, b, c]: [[f64; 3]; 3], d: [f64; 3]) -> f64 {
@@ -100,8 +100,8 @@ fn exact_six_volumes([a, b, c]: [[f64; 3]; 3], d: [f64; 3]) -> f64 {
 /// A sum of numbers as an expansion: nonzero numbers whose bits do not overlap, from the least to the largest, so that
 /// the last one has its sign.
 struct ExactSum {
-    /// As many as six products of three differences can have: each difference is two numbers, and each product of
-    /// three numbers four.
+    /// The most terms of six products of three differences: each difference is two numbers, and each product of three
+    /// numbers four.
     terms: [f64; 6 * 8 * 4],
     len: usize,
 }
@@ -173,7 +173,7 @@ mod tests {
         prop::array::uniform4(prop::array::uniform3(coordinate()))
     }
 
-    /// Four points that are, but for rounding, in a plane along the third axis, in which they are seen on a line.
+    /// Four points in a plane along the third axis, to rounding, whose projections along it are on a line.
     fn nearly_in_a_plane() -> impl Strategy<Value = [[f64; 3]; 4]> {
         let corners = prop::array::uniform3(prop::array::uniform3(-1.0..1.0));
         (corners, -2.0..2.0, -2.0..2.0).prop_map(|([a, b, c], s, t)| {

@@ -17,32 +17,31 @@ pub fn is_moderate<S: Scalar>(x: S) -> bool {
     x > tiny && x < tiny.recip()
 }
 
-/// A power of two in which a quantity of size `largest` may be measured without its square over- or underflowing: 1
-/// wherever that will do.
+/// A power of two in units of which the square of a quantity of size `largest` neither over- nor underflows: 1 if
+/// possible.
 #[inline]
 pub fn comfortable_unit_of_length<S: Scalar>(largest: S) -> S {
     if is_comfortable(largest * largest) { S::ONE } else { power_of_two_below(largest) }
 }
 
-/// The largest power of two that is not above `value`, or the smallest normal one; 1 where `value` is not positive or
-/// not finite.
+/// The largest power of two that is not above `value`, or the smallest normal one; 1 if `value` is not positive or not
+/// finite.
 #[cold]
 pub fn power_of_two_below<S: Scalar>(value: S) -> S {
     if value <= S::ZERO || !value.is_finite() {
         return S::ONE;
     }
     let (_, exponent, _) = num_traits::Float::integer_decode(value);
-    // The mantissa is an integer of as many bits as EPSILON says, of which some of a subnormal number are zero. Two
-    // factors, since the reciprocal of the least power is none.
+    // The mantissa is an integer below 2/EPSILON; a subnormal number's begins with zero bits. Two factors, because the
+    // reciprocal of the least power is infinite.
     let half = i32::from(exponent) / 2;
     power_of_two::<S>(half) / S::EPSILON * power_of_two(i32::from(exponent) - half)
 }
 
-/// What is rarely asked of a vector, such as of one whose square over- or underflows; once in a program for each
-/// question.
+/// A rare question about a vector, such as one whose square over- or underflows; compiled once for each question.
 ///
-/// The coordinates are passed on one by one: a vector of `f64` would go through memory, and since compilers put it
-/// there before they branch, written in other pieces than it is read in, those who never come here would wait for it.
+/// The coordinates are passed one by one: a vector of `f64` would go through memory. Compilers store it before they
+/// branch, in other pieces than it is read in, so that the usual case would wait for it.
 #[inline]
 pub fn rarely<V: Vector, R>(v: V, question: impl FnOnce(V) -> R) -> R {
     #[cold]
@@ -56,11 +55,11 @@ pub fn rarely<V: Vector, R>(v: V, question: impl FnOnce(V) -> R) -> R {
 /// `v` divided by a power of two near its largest magnitude, and that power as two factors; `None` for zero and NaN.
 pub fn scaled<V: Vector>(v: V) -> Option<(V, [V::Scalar; 2])> {
     let largest = v.abs().max_element();
-    // As across the axis of a cylinder, along its axis.
+    // As for the vector across the axis of a cylinder, if the direction is along the axis.
     if largest <= V::Scalar::ZERO {
         return None;
     }
-    // Two factors, since those of subnormal numbers are below the smallest number, and their reciprocals not finite.
+    // Two factors, because those of subnormal numbers are below the smallest number, and their reciprocals not finite.
     let (_, exponent, _) = num_traits::Float::integer_decode(largest);
     let half = power_of_two(i32::from(exponent) / 2);
     let rest = power_of_two(i32::from(exponent) - i32::from(exponent) / 2);

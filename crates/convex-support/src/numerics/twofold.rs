@@ -1,10 +1,10 @@
-//! Sums and products without rounding: as the nearest number and what it loses.
+//! Sums and products without rounding: as the nearest number and its error.
 
 use num_traits::Float as _;
 
 use crate::{Scalar, Vector};
 
-/// What the rounding of `a + b` loses (Knuth's two-sum), exactly.
+/// The exact rounding error of `a + b` (Knuth's two-sum).
 #[inline]
 pub fn lost_in_sum<V: Vector>(a: V, b: V) -> V {
     let sum = a + b;
@@ -12,9 +12,9 @@ pub fn lost_in_sum<V: Vector>(a: V, b: V) -> V {
     (a - (sum - seen)) + (b - seen)
 }
 
-/// The parameter of the point of a line that is closest to an origin, and the point as it is seen from there. However
-/// far the source, it is right to two roundings of its own length: what the difference from the origin loses is added
-/// to what a fused multiply-add rounds once.
+/// The parameter of the point of a line that is closest to an origin, and the point relative to the origin. However far
+/// the source, the point is right to two roundings of its own length: the rounding error of the difference from the
+/// origin is added to a fused multiply-add, which rounds once.
 #[inline(always)]
 pub fn foot_from<V: Vector>(origin: V, source: V, direction: V) -> (V::Scalar, V) {
     let seen = source - origin;
@@ -23,7 +23,7 @@ pub fn foot_from<V: Vector>(origin: V, source: V, direction: V) -> (V::Scalar, V
     (base, moved + lost_in_sum(source, -origin))
 }
 
-/// `a + b` and what its rounding loses.
+/// `a + b` and its rounding error.
 #[inline]
 pub fn two_sum<S: Scalar>(a: S, b: S) -> [S; 2] {
     let sum = a + b;
@@ -31,7 +31,7 @@ pub fn two_sum<S: Scalar>(a: S, b: S) -> [S; 2] {
     [sum, (a - (sum - seen)) + (b - seen)]
 }
 
-/// `a·b` and what its rounding loses, unless that is subnormal.
+/// `a·b` and its rounding error, unless that is subnormal.
 #[inline]
 pub fn two_product<S: Scalar>(a: S, b: S) -> [S; 2] {
     let product = a * b;
@@ -39,8 +39,8 @@ pub fn two_product<S: Scalar>(a: S, b: S) -> [S; 2] {
 }
 
 /// `Σ aᵢ·bᵢ − subtracted`, as if computed in twice the precision and rounded once (Ogita, Rump and Oishi, *Accurate sum
-/// and dot product*, 2005): the error is at most `ε/2` of the result and, of `n` pairs, `(n + 1)²·ε²/4` of `Σ |aᵢ·bᵢ| +
-/// |subtracted|`.
+/// and dot product*, 2005): the error is at most `ε/2` of the result and, for `n` pairs, `(n + 1)²·ε²/4` of `Σ
+/// |aᵢ·bᵢ| + |subtracted|`.
 pub fn dot_minus<S: Scalar>(pairs: impl IntoIterator<Item = (S, S)>, subtracted: S) -> S {
     // Products of two `f32` are exact in `f64`, and the sums there lose less than that.
     if S::EPSILON.as_f64() * S::EPSILON.as_f64() > f64::EPSILON {

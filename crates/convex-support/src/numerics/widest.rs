@@ -2,12 +2,12 @@
 
 /// A loop over lanes in plain arithmetic, which the compiler turns into vector instructions.
 pub trait Loop {
-    /// Runs it. Everything in it is to be inlined, `#[inline(always)]` itself, or it is compiled for the target alone.
+    /// Runs it. All of it must be inlined, this with `#[inline(always)]` too, or it is compiled for the target alone.
     fn run(self);
 }
 
 /// Runs a loop in the widest vector instructions of this processor, which are found at run time. None of them fuses or
-/// reorders what it is not told to, so that the answers are the same.
+/// reorders unless told to, so that the answers are the same.
 #[cfg(feature = "simd")]
 #[inline]
 pub fn widest(lanes: impl Loop) {
