@@ -39,7 +39,7 @@ pub struct Affine<S: SupportMap> {
     lost: S::Vector,
     /// The factor `s` if the matrix is `s` times a rotation or reflection: a ball then stays a ball.
     scale: Option<ScalarOf<S>>,
-    /// The radius of the ball that does not stay one, and becomes part of the core.
+    /// The radius of a ball that does not stay one, and becomes part of the core.
     swept: ScalarOf<S>,
     /// The inverse of the matrix; `None` if it is singular.
     inverse: Option<<S::Vector as Vector>::Matrix>,
@@ -65,8 +65,8 @@ impl<S: SupportMap> Affine<S> {
         let scale = uniform_scale(matrix);
         let zero = ScalarOf::<S>::ZERO;
         let swept = if scale.is_some() { zero } else { core.radius };
-        // The unit vector times the radius that becomes part of the core is right to 6 roundings. Where the matrix
-        // keeps lengths, all of them in one ratio, it does so to 16 roundings.
+        // The unit vector times the radius that becomes part of the core is right to 6 roundings. A matrix that scales
+        // all lengths by one factor does so to 16 roundings.
         let swept_core = Core {
             extent: core.extent + swept,
             radius: core.radius - swept,
@@ -117,7 +117,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
             // |M·x| and every product in it are bounded by the Frobenius norm of M times |x|.
             None => (frobenius_norm(&self.matrix) * (extent + radius), ScalarOf::<S>::ZERO),
         };
-        // The ratio is known to a few roundings.
+        // The ratio has an error of a few roundings.
         let less = ScalarOf::<S>::ONE - ScalarOf::<S>::EPSILON * Scalar::from_f64(16.0);
         Core {
             origin: self.matrix * origin + self.translation,
@@ -145,7 +145,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         [a * self.unit, b * self.unit, d * self.unit]
     }
 
-    /// A map that keeps angles keeps which point is closest.
+    /// A map that keeps angles also maps the closest point to the closest point.
     #[inline]
     fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
         self.scale?;
@@ -153,11 +153,11 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         Some(self.matrix * closest + self.lost)
     }
 
-    /// The line is seen from where the shape's origin is taken to, and from there mapped onto the shape.
+    /// The line is taken relative to the image of the shape's origin, and mapped from there onto the shape.
     ///
-    /// With the computed inverse `N` and `R = 1 − M·N`, a point `y` comes to `x = N·y` and, as `r = M·x − y` is
-    /// computed in twice the precision, to `x − N·r`: as if the line were displaced by `R·r` before it is mapped
-    /// exactly. Where it matters `y` is no longer than 2 sizes. The foot loses `3uD + 2uS`, and the difference from the
+    /// With the computed inverse `N` and `R = 1 − M·N`, a point `y` is mapped to `x = N·y` and, because `r = M·x − y`
+    /// is computed in twice the precision, to `x − N·r`: as if the line were displaced by `R·r` before it is mapped
+    /// exactly. If it matters, `y` is no longer than 2 sizes. The foot loses `3uD + 2uS`, and the difference from the
     /// origin `uD`.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
@@ -188,7 +188,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
             source: source + core.origin,
             direction: onto(near.direction),
             radius,
-            // The ratio of radii is known to 16 roundings.
+            // The ratio of radii is right to 16 roundings.
             error: error * stretch
                 + roundings(4.0, source.norm() + core.extent + core.radius + core.origin.norm())
                 + roundings(32.0, radius),
@@ -204,7 +204,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
         let direction = self.onto_shape * direction;
         self.shape.core_support_feature(direction, slab / self.unit, feature);
-        // A ball that the matrix makes flat along the direction is an edge or a face.
+        // A ball that the matrix flattens along the direction is an edge or a face.
         let is_flat = self.swept > Scalar::ZERO
             && direction.norm() * self.unit * self.swept * ScalarOf::<S>::from_f64(2.0) <= slab;
         let swept = if is_flat { Vector::ZERO } else { swept(self.swept, direction) };
@@ -233,14 +233,14 @@ impl<S: SupportMap> SupportMap for Affine<S> {
             is_near: is_near(origin, extent + radius),
         };
         let image = placement.image(self.shape.rounding().swept(self.swept), origin, extent);
-        // Where the matrix keeps lengths, all of them in one ratio, it does so to 16 roundings.
+        // A matrix that scales all lengths by one factor does so to 16 roundings.
         image.with_radius_error(self.scale.map_or(Scalar::ZERO, |scale| roundings(32.0, scale * radius)))
     }
 }
 
 impl<S: CrossedByLine> CrossedByLine for Affine<S> {
-    /// Where a line is in a set is the same before and after an invertible map. A ball that sweeps the image is one
-    /// before it only where the map keeps angles. Where the matrix is singular the image is flat, and nothing is known.
+    /// An invertible map does not change where a line is in a set. A ball that sweeps the image is one before the map
+    /// only if the map keeps angles. If the matrix is singular, the image is flat and the answer unknown.
     #[inline]
     fn core_line_crossing(
         &self,
@@ -262,8 +262,8 @@ impl<S: CrossedByLine> CrossedByLine for Affine<S> {
     }
 }
 
-/// Conjugate radii of the ellipse or segment that a matrix makes of the unit ball, if that is flat; the second is
-/// nearly zero of a segment.
+/// Conjugate radii of the ellipse or segment to which a matrix maps the unit ball, if that is flat; the second is
+/// nearly zero for a segment.
 ///
 /// With `e` along the longest column and `f` across it in the plane of the others, the columns are `N` times that
 /// basis, where `N` has two rows `x` and `y`. The image `{Nu : |u| ≤ 1}` is that of the unit disc by the lower triangle
@@ -279,7 +279,7 @@ fn flat_image<M: Matrix>(matrix: &M) -> [M::Vector; 2] {
     let across = |j: usize| matrix.col(j) - e * matrix.col(j).dot(e);
     let x = columns(e);
     let length = x.norm();
-    // Of a segment that is rounding, which may be along it.
+    // For a segment that is rounding, which may be along it.
     let f = longest(&across).unit().map(|f| f - e * f.dot(e));
     let Some(f) = f.filter(|f| f.norm() > Scalar::from_f64(0.5)).and_then(Vector::unit) else {
         return [e * length, M::Vector::ZERO];
@@ -294,7 +294,7 @@ fn frobenius_norm<M: Matrix>(matrix: &M) -> <M::Vector as Vector>::Scalar {
     M::Vector::from_fn(|j| matrix.col(j).norm()).norm()
 }
 
-/// The factor `s > 0` where the matrix is, to rounding, `s` times an orthogonal one.
+/// The factor `s > 0` if the matrix is, to rounding, `s` times an orthogonal one.
 fn uniform_scale<M: Matrix>(matrix: M) -> Option<<M::Vector as Vector>::Scalar> {
     type S<M> = <<M as Matrix>::Vector as Vector>::Scalar;
     let scale = matrix.col(0).norm();

@@ -28,7 +28,7 @@ pub struct Hull<A: SupportMap, B> {
     part_b: Part<A::Vector>,
 }
 
-/// How a part of a hull that is swept by the smaller ball as a whole sees itself.
+/// A part of a hull that is swept by the smaller ball, relative to the hull.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Part<V: Vector> {
     /// The part's origin, relative to the hull's.
@@ -112,7 +112,7 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for Hull<A, B>
             rolling_radius: Scalar::ZERO,
             extent,
             // The offset of a part, its sums and the radius that stays with it lose 10 roundings; 4 of the difference
-            // tell which part is farther.
+            // decide which part is farther.
             error: a.error.max(b.error) + roundings(18.0, extent) + roundings(1.0, a.radius.max(b.radius)),
             kind: if is_polytope { CoreKind::Polytope } else { CoreKind::Curved },
         }

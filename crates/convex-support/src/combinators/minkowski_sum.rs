@@ -83,7 +83,7 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
         sum_of_hessians(a, self.b.core_support_hessian(direction, changes))
     }
 
-    /// Where one of the cores is a point.
+    /// Known if one of the cores is a point.
     #[inline]
     fn core_closest_point(&self, x: A::Vector) -> Option<A::Vector> {
         let x = x - self.lost;
@@ -95,11 +95,11 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
         Some(closest + self.lost)
     }
 
-    /// Where one of the cores is a point.
+    /// Known if one of the cores is a point.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<A::Vector>) -> Option<CertainCrossing<A::Vector>> {
         let (a, b) = (self.a.core(), self.b.core());
-        // The point is known to its error.
+        // The point has an error.
         let from =
             |point: Core<A::Vector>, at| line.seen_from([point.origin, at]).within(point.error).sweeping(point.radius);
         match (a.kind, b.kind) {
@@ -109,7 +109,7 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
         }
     }
 
-    /// Where one of the cores is a point.
+    /// Known if one of the cores is a point.
     #[inline]
     fn core_parallelotope(&self) -> Option<Parallelotope<A::Vector>> {
         match (self.a.core().kind, self.b.core().kind) {
@@ -119,7 +119,7 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
         }
     }
 
-    /// What is wrong adds up; the sum of the points is rounded, and again where something was lost is added.
+    /// The errors add up; the sum of the points is rounded, and again if a lost part is added.
     fn rounding(&self) -> Rounding<A::Vector> {
         let (a, b) = (self.a.rounding(), self.b.rounding());
         let sum = Rounding {
@@ -136,7 +136,7 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
 }
 
 impl<A: CrossedByLine, B: CrossedByLine<Vector = A::Vector>> CrossedByLine for MinkowskiSum<A, B> {
-    /// Where one of the cores is a point.
+    /// Known if one of the cores is a point.
     #[inline]
     fn core_line_crossing(
         &self,

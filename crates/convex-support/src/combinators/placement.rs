@@ -9,8 +9,8 @@ use crate::numerics::bound::{image, raised, raised_vector, roundings, roundings_
 use crate::numerics::twofold::{dot_minus, lost_in_sum};
 use crate::{Core, Matrix, Rounding, Scalar, Vector};
 
-/// What the rounding of `matrix·origin + translation` loses, for a shape of the given size. If the shape is
-/// [near](is_near) zero, the roundings of the product are not included.
+/// The rounding error of `matrix·origin + translation`, for a shape of the given size. If the shape is [near](is_near)
+/// zero, the roundings of the product are not included.
 ///
 /// # Errors
 /// [`InvalidShape::TooLarge`] if that overflows.
@@ -21,7 +21,7 @@ pub(super) fn lost_in_origin<V: Vector>(
     size: V::Scalar,
     translation: V,
 ) -> Result<V, InvalidShape> {
-    // Most shapes are about zero, and then nothing is lost.
+    // Most shapes are about zero, and the sum is then exact.
     if origin == V::ZERO {
         return Ok(V::ZERO);
     }
@@ -46,8 +46,8 @@ pub(super) fn is_near<V: Vector>(origin: V, size: V::Scalar) -> bool {
 /// A bound on how far rounding moves the image of a set.
 ///
 /// With `u = ε/2` and `n` dimensions, a product with a matrix of norm `scale` loses `n·√n·u·scale` of the length of the
-/// vector. The direction in the shape's frame loses as much, so that the point found along it is short of the farthest
-/// by twice that times the extent.
+/// vector. The direction in the shape's frame loses as much, so that the point found along it may be short of the
+/// farthest by twice that times the extent.
 #[inline(always)]
 pub(super) fn length_of_error<V: Vector>(
     core: &Core<V>,
@@ -59,7 +59,7 @@ pub(super) fn length_of_error<V: Vector>(
     // The matrix itself is wrong twice, as a map of points and of directions.
     let units = scale * V::Scalar::from_f64(3.0 * of_product::<V>() + 1.0) + operator_error * V::Scalar::from_f64(2.0);
     let turned = scale * core.error + roundings(1.0, units * core.extent);
-    // Most shapes are about zero, and then nothing else is lost.
+    // Most shapes are about zero, and there is then no other error.
     if core.origin == V::ZERO {
         return raised(turned);
     }
@@ -67,12 +67,12 @@ pub(super) fn length_of_error<V: Vector>(
     raised(turned + placed + roundings(2.0, operator_error * core.origin.norm()) + roundings(2.0, lost.norm()))
 }
 
-/// What rounding moves the image of an origin by that is not zero, of a set of some size about it, beside what the
-/// matrix is wrong by.
+/// How far rounding moves the image of a nonzero origin, for a set of some size about it, beside the error of the
+/// matrix.
 #[inline(never)]
 fn error_of_origin<V: Vector>(origin: V, size: V::Scalar, scale: V::Scalar, translation: V) -> V::Scalar {
     let moved = scale * origin.norm();
-    // What was lost is known to a rounding of itself, if it is of the product too, and to 16ε² of what it comes of.
+    // The lost part has an error of its own rounding, if it is of the product too, and of 16ε² of its terms.
     if is_near(origin, size) {
         roundings(of_product::<V>(), moved)
     } else {
@@ -80,7 +80,7 @@ fn error_of_origin<V: Vector>(origin: V, size: V::Scalar, scale: V::Scalar, tran
     }
 }
 
-/// What a product with a matrix loses, in `u` times the norm of both.
+/// The rounding of a product with a matrix, in `u` times the norm of both.
 #[inline(always)]
 fn of_product<V: Vector>() -> f64 {
     V::DIM as f64 * if V::DIM == 2 { 1.42 } else { 1.74 }
@@ -108,7 +108,7 @@ fn is_signed_unit<S: Scalar>(entries: impl Iterator<Item = S>) -> bool {
     others.next().is_some_and(|entry| num_traits::Float::abs(entry) == S::ONE) && others.next().is_none()
 }
 
-/// Which rows and columns of a matrix are those of `±eⱼ`; `None` where none is.
+/// Which rows and columns of a matrix are those of `±eⱼ`; `None` if none is.
 struct Exact {
     rows: Option<[bool; 3]>,
     columns: Option<[bool; 3]>,
@@ -117,7 +117,7 @@ struct Exact {
 impl Exact {
     fn of<M: Matrix>(m: &M) -> Self {
         let dim = M::Vector::DIM;
-        // Hardly a matrix has an entry of zero, unless it is made by hand.
+        // Few matrices have a zero entry, unless written by hand.
         if (0..dim).all(|j| m.col(j).abs().min_element() > <M::Vector as Vector>::Scalar::ZERO) {
             return Self { rows: None, columns: None };
         }
@@ -141,9 +141,9 @@ pub(super) struct Placement<'a, V: Vector> {
     /// If the matrix multiplies all lengths by one factor, to rounding: a bound on that factor.
     pub(super) scale: Option<V::Scalar>,
     pub(super) translation: V,
-    /// What the rounding of the origin lost.
+    /// The rounding error of the origin.
     pub(super) lost: V,
-    /// Whether that is without the roundings of the product.
+    /// Whether it is without the roundings of the product.
     pub(super) is_near: bool,
 }
 
@@ -185,7 +185,7 @@ impl<V: Vector> Placement<'_, V> {
             let is_nothing = |i: usize| self.lost.get(i) == zero;
             error += roundings_of(1.0, without(extent, [is_nothing(0), is_nothing(1), V::DIM > 2 && is_nothing(2)]));
         }
-        // Of a map that keeps lengths, what was wrong before is no longer than it was.
+        // A map that keeps lengths keeps the length of an earlier error.
         let (before, length) = match self.scale {
             Some(scale) => (raised(scale * shape.error_length), scale * shape.error_length),
             None => {

@@ -27,9 +27,9 @@ use crate::{
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 #[derive(Clone, Copy, PartialEq)]
-// In this order, the rotation, which is known last, lies behind the numbers of an error that `new` might return in its
-// place. What shares room with those is copied in pieces of other sizes than it was written in, for which a processor
-// waits.
+// In this order, the rotation, which is computed last, lies behind the numbers of an error that `new` might return in
+// its place. A field that shares its place with those is copied in other pieces than it was written in, for which a
+// processor waits.
 #[repr(C)]
 pub struct Posed<S: SupportMap> {
     /// A bound on the error of the core's support points, as a length.
@@ -134,7 +134,7 @@ impl<S: SupportMap> Posed<S> {
         }
         let lost = lost_in_sum(core.origin, translation);
         let zero = ScalarOf::<S>::ZERO;
-        // Products with the identity are exact, and the sum with nothing is.
+        // Products with the identity are exact, and the sum with zero is.
         let summed = if lost == S::Vector::ZERO { zero } else { roundings(1.0, core.extent + lost.norm()) };
         let (rotation, error) = (Matrix::IDENTITY, core.error + summed);
         Ok(Self { shape, rotation, rotation_error: zero, translation, lost, error, skew: zero })
@@ -158,11 +158,11 @@ impl<S: SupportMap> Posed<S> {
         self.translation
     }
 
-    /// How the shape sees lines: from where its origin is taken to.
+    /// The frame in which the shape tests lines: about the image of its origin.
     ///
-    /// Where that is not zero, the foot of a line, no more than 2 sizes `S` from there, loses `4uS` and `u|c|` as what
-    /// the image of the origin `c` has lost is taken off and `c` is put on. What was lost is turned, of which is lost
-    /// `3u`; where it is larger than the size, no line is near the shape to rounding.
+    /// If the origin `c` is not zero, the foot of a line, no more than 2 sizes `S` from there, loses `4uS` and `u|c|`
+    /// as the lost part of the image of `c` is subtracted and `c` is added. The lost part is turned, which loses `3u`;
+    /// if it is larger than the size, no line is near the shape to rounding.
     #[inline(always)]
     fn frame(&self, core: &Core<S::Vector>, size: ScalarOf<S>) -> Turned<S::Vector> {
         let (rotation, error) = (self.rotation, self.error + self.skew);
@@ -175,8 +175,8 @@ impl<S: SupportMap> Posed<S> {
         Turned { rotation, center, size, error, from }
     }
 
-    /// A vector of the shape as it is turned. Of zero, which is where most shapes have their origin and balls their
-    /// core, the rotation need not even be read.
+    /// The image of a vector of the shape under the rotation. For zero, the origin of most shapes and the core of
+    /// balls, the rotation need not even be read.
     #[inline(always)]
     fn turned(&self, v: S::Vector) -> S::Vector {
         if v == S::Vector::ZERO { v } else { self.rotation * v }
@@ -189,7 +189,7 @@ impl<S: SupportMap> Posed<S> {
 const POLISHED: Errors = Errors { entry: 8.0, operator: 14.0 };
 
 /// The nearest rotation to a matrix that is one to half its digits, by one step of Newton's method for the orthogonal
-/// polar factor, `R·(3 − RᵀR)/2`, which squares the error. What is a rotation to rounding stays as it is.
+/// polar factor, `R·(3 − RᵀR)/2`, which squares the error. A rotation to rounding stays as it is.
 fn polished<M: Matrix>(matrix: M) -> M {
     type S<M> = <<M as Matrix>::Vector as Vector>::Scalar;
     let gram = M::from_cols_fn(|j| matrix.transpose_mul(matrix.col(j)));

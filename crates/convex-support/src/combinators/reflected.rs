@@ -6,7 +6,7 @@ use crate::{
     Vector,
 };
 
-/// The set `−C = { −x : x ∈ C }`: what a difference adds.
+/// The set `−C = { −x : x ∈ C }`: the second term of a difference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reflected<S>(pub(super) S);
 
