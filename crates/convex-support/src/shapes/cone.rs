@@ -40,7 +40,7 @@ impl<V: Vector3> Cone<V> {
     pub fn new(half_height: V::Scalar, radius: V::Scalar) -> Result<Self, InvalidShape> {
         let half_height = non_negative("half_height", half_height)?;
         let radius = non_negative("radius", radius)?;
-        // The slant reaches from the rim up to the apex; of a point it is upright.
+        // The slant is from the rim up to the apex; a point has an upright one.
         let half_radius = radius * V::Scalar::from_f64(0.5);
         let half_length = hypot(half_height, half_radius);
         let slant = if half_length > V::Scalar::ZERO {
@@ -133,9 +133,9 @@ impl<V: Vector3> SupportMap for Cone<V> {
     }
 
     /// The heights are exact, and the unit vector times the radius is right to 6 roundings. The slant's length divides
-    /// both sides of the comparison, one of 2 roundings then and the other of 4, so that the wrong one of apex and rim
-    /// is taken only where what they reach, `2h·d_y` and `r·|d_xz|`, agree to that; then it falls short by 6.5
-    /// roundings of `r·|d_xz|` at most.
+    /// both sides of the comparison, which then have errors of 2 and 4 roundings. So the wrong one of apex and rim is
+    /// taken only if their support values, `2h·d_y` and `r·|d_xz|`, agree to that; then it falls short by 6.5 roundings
+    /// of `r·|d_xz|` at most.
     fn rounding(&self) -> Rounding<V> {
         let extent = V::from_fn(|i| if i == 1 { self.half_height } else { self.radius });
         Rounding::exact(extent).with_error(across(V::splat(roundings(12.5, self.radius))))

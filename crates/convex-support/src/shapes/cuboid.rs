@@ -93,7 +93,7 @@ impl<V: Vector> SupportMap for Cuboid<V> {
         for i in 0..1 << V::DIM {
             let sign = V::from_fn(|axis| if i >> axis & 1 == 1 { -V::Scalar::ONE } else { V::Scalar::ONE });
             let corner = self.half_extents * sign;
-            // Behind the farthest corner by twice what it is on the wrong side.
+            // Each coordinate on the wrong side puts the corner behind the farthest one by twice its part.
             let along = direction * corner;
             if (along.abs() - along).dot(V::ONE) <= slab {
                 feature.push(corner, i);

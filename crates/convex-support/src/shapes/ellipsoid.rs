@@ -177,7 +177,7 @@ impl<V: Vector> Ellipsoid<V> {
 /// The radius of a ball that rolls around within an ellipsoid.
 ///
 /// The least radius of curvature is `c²/a`, of the least and the largest semi-axis. Axes that are orthonormal to half
-/// of their digits may change it by a part, which an eighth is more than unless the ellipsoid is thin; and then there
+/// of their digits may change it by a part, which is less than an eighth unless the ellipsoid is thin; and then there
 /// is not much to gain.
 fn rolling_radius<V: Vector>(semi_axes: V) -> V::Scalar {
     let (least, largest) = (semi_axes.min_element(), semi_axes.max_element());
@@ -186,7 +186,7 @@ fn rolling_radius<V: Vector>(semi_axes: V) -> V::Scalar {
     if is_thin { V::Scalar::ZERO } else { ratio * least * V::Scalar::from_f64(0.875) }
 }
 
-/// What a support point `R·(a∘u)` is wrong by, in roundings of the largest semi-axis: 8 for the unit vector and the
+/// The error of a support point `R·(a∘u)`, in roundings of the largest semi-axis: 8 for the unit vector and the
 /// products with the semi-axes, `3√3` for those with the axes; and twice the `3√3 + 1` that the direction loses in the
 /// ellipsoid's frame.
 const SUPPORT_POINT_ERROR: f64 = 26.0;
@@ -242,10 +242,10 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
             .ellipsoid(&self.axes, self.inverse_semi_axes)
     }
 
-    /// The support point is `R·(a∘u)` with a unit vector `u` that is right to 7 roundings, whatever direction it is
-    /// farthest along: with three for the product, 11 roundings of the extent. That direction is `d` but for 4
-    /// roundings in the ellipsoid's frame, and the point is short by that times twice the semi-axes at most. Where the
-    /// axes are wrong, all of it is moved.
+    /// The support point is `R·(a∘u)` with a unit vector `u` that is right to 7 roundings, for the direction along
+    /// which the point is farthest: with three for the product, 11 roundings of the extent. That direction is `d` to 4
+    /// roundings in the ellipsoid's frame, and the point is short by that times twice the semi-axes at most. Errors of
+    /// the axes move all of it.
     fn rounding(&self) -> Rounding<V> {
         let row = |i: usize| V::from_fn(|j| self.axes.col(j).get(i) * self.semi_axes.get(j));
         let extent = V::from_fn(|i| raised(row(i).norm()));

@@ -29,7 +29,7 @@ impl<V: Vector> Point<V> {
         Ok(Self { at: finite("at", at)? })
     }
 
-    /// Where it is.
+    /// The point.
     #[must_use]
     pub fn at(&self) -> V {
         self.at

@@ -1,4 +1,4 @@
-//! Sets that are given by points, seen from the middle of their bounding box.
+//! Sets of points, relative to the middle of their bounding box.
 
 use crate::numerics::bound::raised_vector;
 use crate::numerics::twofold::lost_in_sum;
@@ -14,20 +14,20 @@ pub(super) fn middle<V: Vector>(points: impl IntoIterator<Item = V>) -> V {
     low * half + high * half
 }
 
-/// The points as they are seen from their middle.
+/// The points relative to their middle.
 #[inline]
 pub(super) fn relative<V: Vector, const N: usize>(points: [V; N]) -> [V; N] {
     let middle = middle(points);
     points.map(|point| point - middle)
 }
 
-/// How far the points are from their middle, coordinate by coordinate.
+/// The largest distance of the points from their middle, for each coordinate.
 #[inline]
 pub(super) fn extent<V: Vector, const N: usize>(points: &[V; N]) -> V {
     relative(*points).into_iter().fold(V::ZERO, |extent, point| extent.max(point.abs()))
 }
 
-/// What is known of points that are computed relative to their middle: what their subtraction loses, exactly.
+/// The rounding of points that are computed relative to their middle: the exact error of the subtraction.
 pub(super) fn rounding_of_points<V: Vector>(points: &[V]) -> Rounding<V> {
     let middle = middle(points.iter().copied());
     let (extent, lost) = points.iter().fold((V::ZERO, V::ZERO), |(extent, lost), &point| {

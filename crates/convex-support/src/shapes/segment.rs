@@ -104,7 +104,7 @@ impl<V: Vector> SupportMap for Segment<V> {
 
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
-        // The axis is rounded, and a closer look is none.
+        // The axis is rounded, so that a closer computation would gain nothing.
         if line.is_close {
             return None;
         }

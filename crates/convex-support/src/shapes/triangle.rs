@@ -60,13 +60,13 @@ pub(crate) struct PlanarTriangle<V: Vector> {
 }
 
 impl<V: Vector> Triangle<V> {
-    /// `None` where the triangle is a segment or a point.
+    /// `None` if the triangle is a segment or a point.
     pub(crate) fn in_its_plane(&self) -> Option<PlanarTriangle<V>> {
         let [a, b, c] = self.longest_edge_first();
         let u = (b - a).unit()?;
         let along = u.dot(c - a);
         let up = (c - a) - u * along;
-        // Once more, since `up` may be small beside what was subtracted.
+        // Once more, because `up` may be small against the subtracted part.
         let up = up - u * u.dot(up);
         let v = up.unit()?;
         Some(PlanarTriangle { corners: [a, b, c], axes: [u, v], length: u.dot(b - a), along, height: v.dot(up) })
@@ -126,7 +126,7 @@ impl<V: Vector> SupportMap for Triangle<V> {
         Some(closest_of_triangle(&Self { points: relative(self.points) }, x))
     }
 
-    /// A closer look in the plane, and in twice the precision, is a search.
+    /// `None` in the plane without a radius, and in twice the precision: a search answers.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
         let (radius, corners) = (line.radius, Self { points: relative(self.points) });

@@ -1,10 +1,10 @@
 //! Which of a set of points are the vertices of its convex hull, and which facets they span, exactly.
 //!
 //! Quickhull (Barber, Dobkin, Huhdanpaa, *The Quickhull algorithm for convex hulls*, 1996) with [exact
-//! predicates](crate::numerics::orientation). Quickhull with rounded predicates has to merge facets that come out
-//! concave, and a mesh from a CAD file, with its thousands of coplanar and repeated points, is where that goes wrong.
-//! With exact ones there is nothing to repair: a point on a facet's plane does not see the facet, so that coplanar
-//! points become coplanar facets, and a duplicate sees none.
+//! predicates](crate::numerics::orientation). With rounded predicates, Quickhull has to merge facets that come out
+//! concave, which goes wrong for a mesh from a CAD file with its thousands of coplanar and repeated points. With exact
+//! ones there is nothing to repair: a point on a facet's plane does not see the facet, so that coplanar points become
+//! coplanar facets, and a duplicate sees none.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -26,8 +26,8 @@ pub(crate) enum ConvexHull {
 
 /// The hull of a non-empty list of finite points, whose coordinates must not be so small that their products vanish.
 ///
-/// `None` where the predicates contradict each other, which only underflow can bring about: coordinates of one point
-/// set that are a hundred orders of magnitude apart.
+/// `None` if the predicates contradict each other, which only underflow can cause: coordinates of one point set that
+/// are a hundred orders of magnitude apart.
 pub(crate) fn convex_hull(points: &[[f64; 3]]) -> Option<ConvexHull> {
     let Some([a, b]) = farthest_along_an_axis(points) else { return Some(ConvexHull::Point(0)) };
     let Some(c) = farthest_from_line(points, a, b) else { return Some(ConvexHull::Segment([a, b])) };
@@ -37,7 +37,7 @@ pub(crate) fn convex_hull(points: &[[f64; 3]]) -> Option<ConvexHull> {
     }
 }
 
-/// Twice the signed area of three points as seen along axis `drop`; the sign is exact.
+/// Twice the signed area of three points projected along axis `drop`; the sign is exact.
 fn area(points: &[[f64; 3]], [a, b, c]: [u32; 3], drop: usize) -> f64 {
     let flat = |i: u32| {
         let p = points[i as usize];
@@ -46,13 +46,13 @@ fn area(points: &[[f64; 3]], [a, b, c]: [u32; 3], drop: usize) -> f64 {
     twice_area([a, b, c].map(flat))
 }
 
-/// Six times the volume between a triangle and a point, positive where the triangle appears counterclockwise from the
+/// Six times the volume between a triangle and a point, positive if the triangle appears counterclockwise from the
 /// point; the sign is exact.
 fn volume(points: &[[f64; 3]], [a, b, c]: [u32; 3], d: u32) -> f64 {
     six_volumes([a, b, c, d].map(|i| points[i as usize]))
 }
 
-/// The index with the largest value; `None` where no value is greater than zero.
+/// The index with the largest value; `None` if no value is greater than zero.
 fn largest(points: &[[f64; 3]], value: impl Fn(u32) -> f64) -> Option<u32> {
     let mut best = (0.0, None);
     for i in 0..points.len() as u32 {
@@ -64,7 +64,7 @@ fn largest(points: &[[f64; 3]], value: impl Fn(u32) -> f64) -> Option<u32> {
     best.1
 }
 
-/// The two points at the ends of the longest edge of the bounding box; `None` where all points coincide.
+/// The two points at the ends of the longest edge of the bounding box; `None` if all points coincide.
 fn farthest_along_an_axis(points: &[[f64; 3]]) -> Option<[u32; 2]> {
     let mut widest = (0.0, None);
     for axis in 0..3 {
@@ -85,19 +85,19 @@ fn farthest_along_an_axis(points: &[[f64; 3]]) -> Option<[u32; 2]> {
     widest.1
 }
 
-/// A point far from the line through two points, and never on it; `None` where all are on it.
+/// A point far from the line through two points, and never on it; `None` if all are on it.
 fn farthest_from_line(points: &[[f64; 3]], a: u32, b: u32) -> Option<u32> {
     largest(points, |c| (0..3).map(|drop| area(points, [a, b, c], drop).abs()).fold(0.0, f64::max))
 }
 
-/// A point far from the plane of three points, and never on it; `None` where all are on it.
+/// A point far from the plane of three points, and never on it; `None` if all are on it.
 fn farthest_from_plane(points: &[[f64; 3]], triangle: [u32; 3]) -> Option<u32> {
     largest(points, |d| volume(points, triangle, d).abs())
 }
 
 /// The corners of the hull of coplanar points that are not collinear, by Andrew's monotone chain.
 fn polygon(points: &[[f64; 3]], triangle: [u32; 3]) -> Vec<u32> {
-    // Seen along the axis that the plane is steepest to, the points keep their places in it.
+    // Projected along the axis nearest its normal, the points keep their order in the plane.
     let seen = |drop: usize| area(points, triangle, drop).abs();
     let drop = (1..3).fold(0, |best, axis| if seen(axis) > seen(best) { axis } else { best });
     let key = |i: u32| (points[i as usize][(drop + 1) % 3], points[i as usize][(drop + 2) % 3]);
@@ -132,9 +132,9 @@ struct Facet {
     across: [u32; 3],
     /// The first of the list of points that are known to see this facet, continued in `Quickhull::next`.
     outside: u32,
-    /// The one of them farthest from its plane, and six times the volume that it spans with the facet.
+    /// The point of the list farthest from its plane, and six times the volume that it spans with the facet.
     farthest: (u32, f64),
-    /// The insertion that last looked at this facet, and whether it saw it.
+    /// The insertion that last tested this facet, and whether its point saw it.
     looked: u32,
     seen: bool,
     removed: bool,
@@ -145,7 +145,7 @@ struct Quickhull<'a> {
     facets: Vec<Facet>,
     /// The next point of the list that a point is in.
     next: Vec<u32>,
-    /// Facets whose lists are to be worked off.
+    /// Facets whose lists are still to be processed.
     todo: Vec<u32>,
     /// The new facet that begins at a corner of the horizon.
     begins: Vec<u32>,
@@ -201,7 +201,7 @@ impl<'a> Quickhull<'a> {
         }
     }
 
-    /// Adds point after point, each the farthest of some list, until no list is left.
+    /// Adds the points one by one, each the farthest of some list, until no list is left.
     fn run(mut self) -> Option<Vec<[u32; 3]>> {
         // Every round takes at least one point off the lists for good.
         let mut seen = Vec::new();
@@ -251,9 +251,9 @@ impl<'a> Quickhull<'a> {
 
     /// Replaces the facets that `apex` sees by the triangles between it and the horizon, and passes their lists on.
     ///
-    /// A point that saw one of the old facets and is not within the new hull sees one of the new facets: where the
-    /// segment from it to the old facet enters the new hull, it is above the plane of the old facet, as no point of
-    /// the facets that stay is.
+    /// A point that saw one of the old facets and is outside the new hull sees one of the new facets: where the segment
+    /// from it to the old facet enters the new hull, it is above the plane of the old facet, but no point of the
+    /// remaining facets is.
     fn replace(&mut self, apex: u32, seen: &[u32], horizon: &[(u32, usize)]) -> Option<()> {
         let first = self.facets.len();
         for &(facet, edge) in horizon {

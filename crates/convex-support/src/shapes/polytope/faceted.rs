@@ -1,4 +1,4 @@
-//! Polytopes that know the planes of their facets.
+//! Polytopes with the planes of their facets.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -19,7 +19,7 @@ use crate::{
     Vector, compiled_once,
 };
 
-/// [`WIDTH`] planes, each a unit outward normal by coordinates and how far the polytope reaches along it from the
+/// [`WIDTH`] planes, each a unit outward normal by coordinates and the polytope's support value along it from the
 /// middle.
 pub(crate) type Planes<S> = [[S; WIDTH]; 4];
 
@@ -67,7 +67,7 @@ impl<V: Vector> Faceted<V> {
     }
 
     fn of(FromPoints { polytope, seen, unit, hull }: FromPoints<V>) -> Self {
-        // Without a hull, the bounding box is all that is known.
+        // Without a hull, only the bounding box is known.
         let hull = hull.unwrap_or(ConvexHull::Point(0));
         let normals: Vec<V> = normals(&hull, &seen, V::DIM)
             .into_iter()
@@ -89,7 +89,7 @@ impl<V: Vector> Faceted<V> {
         Self { planes, count: facets.len(), uncut, polytope }
     }
 
-    /// The same set by its vertices.
+    /// The same set in terms of its vertices.
     #[must_use]
     pub const fn polytope(&self) -> &Polytope<V> {
         &self.polytope
@@ -116,7 +116,7 @@ impl<V: Vector> Faceted<V> {
     }
 }
 
-/// The normal of a facet, and how far the polytope reaches along it from the middle.
+/// The normal of a facet, and the polytope's support value along it from the middle.
 pub(crate) fn facet<V: Vector>(planes: &[Planes<V::Scalar>], index: usize) -> (V, V::Scalar) {
     let (planes, l) = (&planes[index / WIDTH], index % WIDTH);
     (V::from_fn(|i| planes[i][l]), planes[3][l])
@@ -129,8 +129,8 @@ compiled_once! {
     }
 }
 
-/// The normals without what is another one again to rounding, as the triangles of one plane have it; and of each which
-/// of those it is.
+/// The normals without repetitions to rounding, as from triangles in one plane; and for each the index of its normal
+/// among those.
 fn distinct<V: Vector>(normals: &[V]) -> (Vec<V>, Vec<usize>) {
     let key = |i: usize| [0, 1, V::DIM - 1].map(|axis| normals[i].get(axis).as_f64());
     let mut order: Vec<usize> = (0..normals.len()).collect();
@@ -148,7 +148,7 @@ fn distinct<V: Vector>(normals: &[V]) -> (Vec<V>, Vec<usize>) {
 }
 
 /// The corners of the facets of a hull that spans the space, in the order of their [`normals`]; in the plane the second
-/// is told twice.
+/// is repeated.
 fn corners(hull: &ConvexHull, dimension: usize) -> Vec<[u32; 3]> {
     match hull {
         ConvexHull::Polygon(corners) if dimension == 2 => {
@@ -160,12 +160,11 @@ fn corners(hull: &ConvexHull, dimension: usize) -> Vec<[u32; 3]> {
     }
 }
 
-/// If corners are farther behind the plane of their facet, in ε of the size, they are of slivers, and nothing is
-/// known.
+/// If corners are farther behind the plane of their facet, in ε of the size, they are of slivers, and nothing is known.
 const FARTHEST_BEHIND: f64 = 64.0;
 
-/// What is behind all planes by more than this is in the hull. The facets are all that it has, each with its corners
-/// and its plane.
+/// Every point behind all planes by more than this is in the hull. All facets of the hull are given, each with its
+/// corners and its plane.
 ///
 /// Let no corner be farther behind the plane of its facet than that, and let a point `o` of the hull, here the mean of
 /// the vertices, be farther behind all planes. A line from `o` to a point `x` outside leaves the hull through some
@@ -188,17 +187,17 @@ fn uncut<V: Vector>(
     if is_known { farthest } else { V::Scalar::infinity() }
 }
 
-/// Outward normals, of any length, of half-spaces whose intersection the hull is, in the first `dimension` coordinates.
+/// Outward normals, of any length, of half-spaces whose intersection is the hull, in the first `dimension` coordinates.
 ///
-/// A plane is laid as far out as the polytope reaches along its normal, so that rounding of a normal cuts nothing off.
-/// A sliver's normal is known across it only to `ε` by its width; but what it leaves uncut is as narrow as it is,
-/// between its neighbours.
+/// A plane is placed at the support value of the polytope along its normal, so that rounding of a normal cuts nothing
+/// off. The error of a sliver's normal across it is `ε` by its width; but the part that it leaves uncut, between its
+/// neighbours, is as narrow.
 fn normals(hull: &ConvexHull, points: &[[f64; 3]], dimension: usize) -> Vec<DVec3> {
     let at = |i: u32| DVec3::from(points[i as usize]);
     let both = |n: DVec3| [n, -n];
     match hull {
         ConvexHull::Point(_) => DVec3::AXES[..dimension].iter().copied().flat_map(both).collect(),
-        // Along it, and across: what is left of the axes, and in space what is across those too.
+        // Along it, and across: the parts of the axes across it, and in space across those too.
         ConvexHull::Segment([a, b]) => {
             let along = at(*b) - at(*a);
             let third = if dimension == 2 { DVec3::Z } else { DVec3::AXES[along.abs().min_position()] };
@@ -235,7 +234,7 @@ fn normals(hull: &ConvexHull, points: &[[f64; 3]], dimension: usize) -> Vec<DVec
     }
 }
 
-/// Everything as the polytope, and the crossing by a line beside.
+/// The polytope's answers, except for the crossing by a line.
 impl<V: Vector> SupportMap for Faceted<V> {
     type Vector = V;
 

@@ -1,4 +1,4 @@
-//! The farthest vertex of a convex polytope among the few that can be, or by climbing along its edges.
+//! The farthest vertex of a convex polytope among a few candidates, or by climbing along its edges.
 
 #![cfg_attr(not(feature = "hull"), allow(dead_code, reason = "only the feature `hull` finds the edges"))]
 
@@ -24,7 +24,7 @@ use crate::{Scalar, Vector};
 pub(super) struct Graph<V: Vector> {
     /// Sorted by their cells, relative to the middle, so that neighbours are near in memory too.
     vertices: Vec<V>,
-    /// Their places in the list that was given.
+    /// Their places in the given list.
     names: Vec<u32>,
     /// The neighbours of vertex `i` are `neighbours[first[i]..first[i + 1]]`.
     first: Vec<u32>,
@@ -33,7 +33,7 @@ pub(super) struct Graph<V: Vector> {
     sizes: V,
     /// By face, then row, then column.
     cells: Vec<Cell>,
-    /// The vertices for which there was no place in their cells.
+    /// The vertices for which their cells had no place.
     further: Vec<u32>,
     resolution: usize,
     half_resolution: V::Scalar,
@@ -59,7 +59,7 @@ enum Rest {
         begin: u32,
         end: u32,
     },
-    /// They are too many, and the first held is one of them, to climb from.
+    /// They are too many; the climb begins at the first held vertex.
     Climbed,
 }
 
@@ -73,10 +73,10 @@ const HELD: usize = 4;
 /// docs/support-maps.md).
 const VERTICES_PER_CELL: f64 = 0.25;
 
-/// The longest list that is looked through rather than climbed.
+/// The longest list that is scanned rather than climbed.
 const LISTED: usize = 24;
 
-/// Vertices that a cell is searched for before it is left to be climbed.
+/// The number of vertices after which the search of a cell ends, and it is left to be climbed.
 const MANY: usize = 2 * LISTED;
 
 impl<V: Vector> Graph<V> {
@@ -87,7 +87,7 @@ impl<V: Vector> Graph<V> {
         let side = if V::DIM == 3 { num_traits::Float::sqrt(cells) } else { cells };
         let resolution = (side as usize).max(1);
         let size = vertices.iter().fold(V::ZERO, |size, v| size.max(v.abs()));
-        // A polytope that is flat, or nearly so, is no reason for a cube that is.
+        // A polytope that is flat, or nearly so, must not make the cube flat.
         let thinnest = (size.max_element() * V::Scalar::EPSILON).max(V::Scalar::min_positive_value());
         let mut graph = Self {
             vertices: Vec::new(),
@@ -136,7 +136,7 @@ impl<V: Vector> Graph<V> {
                 let (axis, is_negative) = (index / cells_of_face / 2, index / cells_of_face % 2 == 1);
                 start = self.farthest_along_axis(axis, is_negative);
             } else if index % cells_of_face >= self.resolution {
-                // The cell next to it in the row before. From the end of that row, a climb could lead half around the
+                // The neighbouring cell in the row before. From the end of that row, a climb could lead half around the
                 // polytope.
                 start = self.cells[index - self.resolution].vertices[0];
             }
@@ -171,8 +171,8 @@ impl<V: Vector> Graph<V> {
         (0..self.vertices.len() as u32).reduce(|best, i| if reach(&i) > reach(&best) { i } else { best }).unwrap_or(0)
     }
 
-    /// Finds all vertices that are farthest along some direction of the cone, and perhaps others, from the one that is
-    /// along its middle. Gives up where they are many, and says so by `false`.
+    /// Finds all vertices that are farthest along some direction of the cone, and perhaps others, from the one along
+    /// its middle. Returns `false` if there are too many.
     ///
     /// As the direction moves through the cone, the farthest vertex passes along edges, over vertices that are farthest
     /// too: they are connected. And such a vertex is farther than its neighbours somewhere in the cone.
@@ -211,23 +211,23 @@ impl<V: Vector> Graph<V> {
         &self.neighbours[self.first[vertex as usize] as usize..self.first[vertex as usize + 1] as usize]
     }
 
-    /// Vertex `index` as the search counts them.
+    /// The vertex with this index of the search.
     #[inline]
     pub(super) fn vertex(&self, index: u32) -> V {
         self.vertices[index as usize]
     }
 
-    /// The index of a vertex in the list that the graph was made of.
+    /// The index of a vertex in the list given for the graph.
     #[inline]
     pub(super) fn name(&self, index: u32) -> usize {
         self.names[index as usize] as usize
     }
 
-    /// The index of a vertex farthest along the direction `(dx, dy, dz)`: the one that came first in the list that was
-    /// given, where they are not too many to be listed. `hint` may be that of a vertex to climb from, or anything.
+    /// The index of a vertex farthest along the direction `(dx, dy, dz)`: the one that comes first in the given list,
+    /// unless they are too many to be listed. `hint` may be a vertex to climb from, or any number.
     ///
-    /// The coordinates come one by one because a vector would pass through memory, written in other pieces than it is
-    /// read in, which takes as long as all the rest.
+    /// The coordinates are passed one by one because a vector would pass through memory, written in other pieces than
+    /// it is read in, which takes as long as all the rest.
     #[inline(never)]
     pub(super) fn farthest(&self, dx: V::Scalar, dy: V::Scalar, dz: V::Scalar, hint: u32) -> u32 {
         let direction = V::from_fn(|i| {
@@ -253,8 +253,8 @@ impl<V: Vector> Graph<V> {
         }
     }
 
-    /// The vertices no farther than `depth` behind the farthest one along a direction, as numbers in the list that the
-    /// graph was made of and in their order; `None` where they are more than there is room for.
+    /// The vertices no farther than `depth` behind the farthest one along a direction, as indices of the list given for
+    /// the graph and in their order; `None` if there is no room for all.
     ///
     /// From any vertex an edge leads up, unless it is a farthest one: those above a plane are connected.
     pub(super) fn near<'r>(
@@ -322,14 +322,14 @@ impl<V: Vector> Graph<V> {
     /// The cell of a direction.
     #[inline(always)]
     fn cell(&self, direction: V) -> usize {
-        // The polytope stretched to a cube, v/s, is seen along d∘s: d·v = (d∘s)·(v/s).
+        // For the polytope stretched to a cube, v/s, the direction is d∘s: d·v = (d∘s)·(v/s).
         self.cell_of_unstretched(direction * self.sizes)
     }
 
-    /// The face of the cube that a direction leaves through, and where.
+    /// The face of the cube that a direction leaves through, and the place on it.
     #[inline(always)]
     fn cell_of_unstretched(&self, direction: V) -> usize {
-        // Looked up rather than asked for by `get`, which would branch.
+        // Indexed in an array rather than by `get`, which would branch.
         let wrapped: [V::Scalar; 5] = core::array::from_fn(|i| direction.get(i % V::DIM));
         let (mut axis, mut largest) = (0, wrapped[0].abs());
         for i in 1..V::DIM {
@@ -347,7 +347,7 @@ impl<V: Vector> Graph<V> {
         cell
     }
 
-    /// The directions of a cell, seen by the polytope as it is.
+    /// The directions of a cell, for the polytope before it is stretched.
     fn cone(&self, mut cell: usize) -> DirectionCone<V> {
         let width = 1.0 / self.resolution as f64;
         let mut places = [0.0; 2];
@@ -367,18 +367,18 @@ impl<V: Vector> Graph<V> {
         DirectionCone {
             middle: stretched(sign, &|i| places[i]),
             spread: stretched(0.0, &|_| width),
-            // Each of three products d·v is at most 1 in the stretched cube. The reaches that are compared later, and
-            // the place of a direction in its cell, are each rounded a few times.
+            // Each of three products d·v is at most 1 in the stretched cube. The support values that are compared
+            // later, and the place of a direction in its cell, are each rounded a few times.
             rounding: thinnest * V::Scalar::EPSILON * V::Scalar::from_f64(64.0),
         }
     }
 }
 
-/// The whole part of a number below 2³¹, or either neighbour of a whole one; 0 of one that is negative by rounding, and
-/// anything of a NaN.
+/// The integer part of a number below 2³¹, or either neighbour of an integer; 0 for a number that is negative by
+/// rounding, and anything for a NaN.
 ///
 /// From 2⁵² to 2⁵³ the doubles are a unit apart: moved there, a number is rounded to its last bits. A cast takes twice
-/// as long, since it saturates.
+/// as long, because it saturates.
 #[inline(always)]
 fn whole_part(x: f64) -> usize {
     const AMONG_WHOLE_NUMBERS: f64 = 1.5 * (1_u64 << 52) as f64;
@@ -386,7 +386,7 @@ fn whole_part(x: f64) -> usize {
     (bits as i32).max(0) as usize
 }
 
-/// The directions `d` with `|d − middle| ≤ spread`, coordinate by coordinate.
+/// The directions `d` with `|d − middle| ≤ spread` in each coordinate.
 struct DirectionCone<V: Vector> {
     middle: V,
     spread: V,
@@ -394,7 +394,7 @@ struct DirectionCone<V: Vector> {
 }
 
 impl<V: Vector> DirectionCone<V> {
-    /// Whether `v` can come out as far as `u` along some direction of the cone, rounding included.
+    /// Whether `v` can be as far as `u` along some direction of the cone, rounding included.
     fn can_be_farther(&self, v: V, u: V) -> bool {
         let difference = v - u;
         let most = self.middle.dot(difference) + self.spread.dot(difference.abs());

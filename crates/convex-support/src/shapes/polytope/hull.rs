@@ -1,4 +1,4 @@
-//! Polytopes that know their vertices and edges.
+//! Polytopes with their vertices and edges.
 
 use alloc::vec::Vec;
 
@@ -9,7 +9,7 @@ use super::{Polytope, Search, checked, middle, relative};
 use crate::error::InvalidShape;
 use crate::{Scalar, Vector, compiled_once};
 
-/// Up to this many vertices a scan takes no longer than looking them up (measured: docs/support-maps.md).
+/// Up to this many vertices a scan takes no longer than a table (measured: docs/support-maps.md).
 const SCANNED: usize = 8;
 
 impl<V: Vector> Polytope<V> {
@@ -27,15 +27,15 @@ impl<V: Vector> Polytope<V> {
     }
 }
 
-/// A polytope and what it was found from.
+/// A polytope and the data it was found from.
 pub(super) struct FromPoints<V: Vector> {
     pub(super) polytope: Polytope<V>,
-    /// The points seen from the middle, in the unit.
+    /// The points relative to the middle, in the unit.
     pub(super) seen: Vec<[f64; 3]>,
-    /// The unit of those.
+    /// The unit of the points.
     pub(super) unit: V::Scalar,
-    /// The hull of those. There is none of points a hundred orders of magnitude apart: then nothing is lost of the
-    /// polytope but the time of a scan.
+    /// The hull of the points. Points a hundred orders of magnitude apart have none: then the polytope is complete, but
+    /// takes the time of a scan.
     pub(super) hull: Option<ConvexHull>,
 }
 
@@ -91,7 +91,7 @@ fn edges(hull: &ConvexHull) -> Vec<[u32; 2]> {
             let next = corners.iter().cycle().skip(1);
             corners.iter().zip(next).flat_map(|(&a, &b)| [[a, b], [b, a]]).collect()
         }
-        // Every edge belongs to two triangles, which pass it in opposite directions.
+        // Every edge belongs to two triangles, which contain it in opposite directions.
         ConvexHull::Polyhedron(facets) => facets.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect(),
     }
 }

@@ -6,10 +6,10 @@ use alloc::vec::Vec;
 
 use crate::{Scalar, Vector};
 
-/// Points side by side: a multiple of what a vector register holds on every target.
+/// Points side by side: a multiple of the width of a vector register on every target.
 pub(crate) const WIDTH: usize = 4;
 
-/// Blocks of which at first only the farthest reach is asked for, where there are more.
+/// Longer lists are searched in chunks of this many blocks, at first for the farthest support value alone.
 const BLOCKS: usize = 16;
 
 /// Up to [`WIDTH`] points, coordinate by coordinate.
@@ -28,11 +28,11 @@ impl<V: Vector> Lanes<V> {
         Self { blocks: side_by_side(points, coordinate), count: points.len() }
     }
 
-    /// The index of the first point farthest along the direction `(dx, dy, dz)`; any index where that is not a number.
+    /// The index of the first point farthest along the direction `(dx, dy, dz)`; any index if that is NaN.
     ///
-    /// Which point it is cannot be foreseen, so that nothing branches on it. To keep the index beside the reach costs
-    /// half as much again; of long lists it is done only for the chunk that the farthest point is in. Both times the
-    /// same operations are rounded alike, so that the reach is found again exactly.
+    /// The point cannot be predicted, so nothing branches on it. To keep the index beside the support value costs half
+    /// as much again; for long lists it is done only for the chunk with the farthest point. Both times the same
+    /// operations are rounded alike, so that the support value is found again exactly.
     #[inline(never)]
     pub(super) fn farthest(&self, dx: V::Scalar, dy: V::Scalar, dz: V::Scalar) -> usize {
         let (mut first, mut most) = (0, -V::Scalar::infinity());
@@ -67,10 +67,10 @@ pub(super) fn side_by_side<T: Copy, S, const NUMBERS: usize>(
     list.chunks(WIDTH).map(block).collect()
 }
 
-/// How far the farthest point of each lane reaches along a direction.
+/// The support value of the points of each lane along a direction.
 ///
-/// Apart from its caller the loop is one that compilers turn into vector instructions; within it, it is not. And an
-/// array for the direction would be written number by number and read in pairs, which takes longer than a dozen points.
+/// Compilers turn this loop into vector instructions only apart from its caller. And an array for the direction would
+/// be written number by number and read in pairs, which takes longer than a dozen points.
 #[inline(never)]
 fn farthest_reaches<S: Scalar>(blocks: &[Block<S>], dx: S, dy: S, dz: S) -> [S; WIDTH] {
     let mut best = [-S::infinity(); WIDTH];
@@ -83,8 +83,8 @@ fn farthest_reaches<S: Scalar>(blocks: &[Block<S>], dx: S, dy: S, dz: S) -> [S; 
     best
 }
 
-/// The place of the first point farthest along a direction, point by point and block by block, as a whole number of the
-/// points' own type: then reach and place are chosen by the same vector instructions.
+/// The place of the first point farthest along a direction, point by point and block by block, as an integer in the
+/// points' own type: then support value and place are chosen by the same vector instructions.
 #[inline(never)]
 fn place_of_farthest<S: Scalar>(blocks: &[Block<S>], dx: S, dy: S, dz: S) -> S {
     let width = S::from_f64(WIDTH as f64);

@@ -99,9 +99,9 @@ impl<V: Vector> Polytope<V> {
 
     fn searched_by(search: Search<V>, points: Vec<V>, middle: V) -> Result<Self, InvalidShape> {
         let extent = points.iter().map(|&p| (p - middle).norm()).fold(V::Scalar::ZERO, V::Scalar::max);
-        // Which point is farthest is told by comparing two products with the direction, of 3 roundings each; and a
-        // climb ends where every edge gains no more than 4 roundings of its own length, of which there are some on the
-        // way to the farthest.
+        // Two products with the direction, of 3 roundings each, are compared to find the farthest point. A climb ends
+        // where every edge gains no more than 4 roundings of its own length, and there are some on the way to the
+        // farthest.
         let compared = match &search {
             Search::Scan(_) => 6.0,
             Search::Look { .. } => 16.0,
@@ -111,15 +111,15 @@ impl<V: Vector> Polytope<V> {
         Ok(Self { points, search, middle, extent: measurable("points", extent)?, rounding })
     }
 
-    /// What the search calls the point farthest along `direction`; `hint` is such a number to begin at, or anything.
+    /// The index in the search of the point farthest along `direction`; `hint` is an index to begin at, or any number.
     ///
-    /// A direction whose products with coordinates could vanish or overflow is taken at another length.
+    /// A direction whose products with coordinates could vanish or overflow is scaled.
     #[inline(always)]
     fn farthest(&self, direction: V, hint: u32) -> u32 {
         let coordinates = |v: V| (v.get(0), v.get(1), if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO });
         let (mut dx, mut dy, mut dz) = coordinates(direction);
         // Added from the last to the first, so that the compiler reads x and y as one piece, which is how a caller
-        // behind `dyn` writes them; y and z would be a piece of two writes, which the processor waits for.
+        // behind `dyn` writes them; y and z would be a piece of two writes, for which the processor waits.
         if !is_comfortable(dz * dz + dy * dy + dx * dx)
             && let Some((multiple, _)) = rarely(direction, scaled)
         {
@@ -147,9 +147,9 @@ fn checked<V: Vector>(points: impl IntoIterator<Item = V>) -> Result<Vec<V>, Inv
     if points.is_empty() { Err(InvalidShape::NoPoints) } else { Ok(points) }
 }
 
-/// The points seen from the middle, in units of a power of two near their size, and that unit. The search works on
-/// these rounded differences, and on nothing else, so that whatever is exact about them stays exact, and products with
-/// a direction stay in range.
+/// The points relative to the middle, in units of a power of two near their size, and that unit. The search works only
+/// on these rounded differences, so that their exact properties stay exact, and products with a direction stay in
+/// range.
 fn relative<V: Vector>(points: &[V], middle: V) -> (Vec<V>, V::Scalar) {
     let mut seen: Vec<V> = points.iter().map(|&p| p - middle).collect();
     let largest = seen.iter().fold(V::Scalar::ZERO, |largest, p| largest.max(p.abs().max_element()));
