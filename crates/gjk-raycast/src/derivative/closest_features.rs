@@ -12,8 +12,8 @@ use crate::unit::power_of_two_near;
 /// The error of the normal, in units of the rounding of the points that it is computed from.
 const TILT: f64 = 64.0;
 
-/// The largest error of a normal, as an angle, that is allowed for; with a larger one, features that visibly lean
-/// would count as parallel. It is also the largest angle within which features are tried that may hold the normal.
+/// The largest error of a normal, as an angle, that is allowed for; with a larger one, features that visibly lean would
+/// count as parallel. It is also the largest angle within which features that may hold the normal are tried.
 const LARGEST_TILT: f64 = 1e-3;
 const LARGEST_REACH: f64 = 0.03;
 
@@ -51,14 +51,14 @@ pub struct ClosestFeatures<V: Vector> {
     pub(super) are_turning: [bool; 2],
     /// Whether the Hessians predict the support points nearby.
     pub(super) is_foretold: bool,
-    /// The features, relative to the middle.
+    /// The features, relative to that point.
     pub(super) outlines: [Outline<V::Scalar>; 2],
     pub(super) spans: [Span<V::Scalar>; 2],
     /// A bound on the error of the normal.
     pub(super) tilt: V::Scalar,
-    /// Whether another way out of the overlap is as short.
+    /// Whether another direction out of the overlap is as short.
     pub(super) is_tied: bool,
-    /// Whether the answer is zero and cannot fall, or is so to its error.
+    /// Whether the answer is zero, to its error, and cannot fall.
     pub(super) is_at_floor: bool,
 }
 
@@ -69,7 +69,7 @@ pub(super) struct Bodies<'s, V: Vector> {
     pub(super) unit: V::Scalar,
 }
 
-/// Where two bodies are closest.
+/// The closest points of two bodies.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ClosestPoints<V: Vector> {
     pub(super) normal: V,
@@ -77,7 +77,7 @@ pub(super) struct ClosestPoints<V: Vector> {
     pub(super) signed_distance: V::Scalar,
     /// A bound on the error of the signed distance.
     pub(super) error: V::Scalar,
-    /// Whether the normal is that of slightly different poses: the normal of a hit is that of a time near it.
+    /// Whether the normal belongs to slightly different poses, as that of a hit to a time near it.
     pub(super) is_near: bool,
 }
 
@@ -94,7 +94,7 @@ impl<V: Vector> ClosestFeatures<V> {
         // face: both are right to rounding. If they touch, or the search ended early, it is only as accurate as the
         // search left it.
         let is_curved = cores.iter().any(|core| matches!(core.kind, CoreKind::Curved));
-        // NaN is nowhere near.
+        // NaN is not near.
         let least = size * rounding();
         let is_searched = closest.is_near || gap.abs() <= least || closest.error > least;
         let mut features = bodies.unseen();
@@ -107,8 +107,8 @@ impl<V: Vector> ClosestFeatures<V> {
         let is_found = if is_curved {
             settle(seen) || refine(seen)
         } else {
-            // The features along a normal that is right to rounding meet the condition of the closest points; those of
-            // another do not.
+            // The features along a normal that is right to rounding meet the condition of the closest points; those
+            // along another normal do not.
             is_searched && (refine(seen) || settle(seen))
         };
         if !is_found {
@@ -118,14 +118,14 @@ impl<V: Vector> ClosestFeatures<V> {
         features
     }
 
-    /// How the features extend together, where the closest points are the only ones.
+    /// The directions in which the features extend together, if the closest points are the only ones.
     pub(super) fn joint(&self) -> Option<DifferenceSpan<V::Scalar>> {
         let least = self.tilt * V::Scalar::from_f64(4.0);
-        // The side of a cone turns with the normal: where it is parallel to an edge, the two conditions that each of
-        // them puts to the normal are met by any normal that is off by the root of their error.
+        // The side of a cone turns with the normal. If it is parallel to an edge, both put the same condition on the
+        // normal, which any normal meets that is off by the root of their error.
         let parallel = if self.are_turning == [false; 2] { least } else { least.sqrt() };
         let joint = DifferenceSpan::of(self.spans, parallel);
-        // In the plane an edge is all of the line across the normal.
+        // In the plane an edge is the whole line across the normal.
         joint.filter(|joint| V::DIM == 3 || !matches!(joint, DifferenceSpan::Crossed(_)))
     }
 
@@ -135,9 +135,8 @@ impl<V: Vector> ClosestFeatures<V> {
         Symmetric { a: a.a + b.a, b: a.b + b.b, d: a.d + b.d }.plus(self.signed_distance)
     }
 
-    /// A bound on the error of the places of features' corners, in the unit: the rounding of coordinates in the world
-    /// and of the sizes of both bodies, and how far the features of curved bodies move as the normal turns by its
-    /// error.
+    /// A bound on the error of the corners of features, in the unit: the rounding of coordinates in the world and of
+    /// the sizes of both bodies, and how far the features of curved bodies move as the normal turns by its error.
     pub(super) fn slack(&self) -> V::Scalar {
         let world = self.middle.abs().max_element() / self.unit;
         let rounding = rounding::<V::Scalar>() * (world + V::Scalar::from_f64(2.0));
@@ -176,8 +175,8 @@ pub(super) fn rounding<S: Scalar>() -> S {
     S::EPSILON * S::from_f64(TILT)
 }
 
-/// The error of the normal, as an angle: the rounding of the points that it is computed from over the gap between the
-/// cores, and the error of the distance over the size of the bodies.
+/// The error of the normal, as an angle: the rounding of its points divided by the gap between the cores, and the error
+/// of the distance divided by the size of the bodies.
 fn tilt<S: Scalar>(size: S, gap: S, error: S) -> S {
     let magnified = if gap > S::ZERO { rounding::<S>() * (size / gap) } else { S::ZERO };
     let open = if error.is_finite() { error / size * S::from_f64(4.0) } else { S::ZERO };
@@ -187,7 +186,7 @@ fn tilt<S: Scalar>(size: S, gap: S, error: S) -> S {
 /// The error of the normal between curved bodies, as an angle. Let `v` be the shortest vector between two cores that
 /// are `g` apart, and `w` any other one that a bracket `u ≥ g ≥ l` allows. Since `w·v ≥ g²`, the two differ by at most
 /// `√(u² − l²)`, so that the angle between them is up to `√(2(u − l)/g)`. If the cores overlap, the signed distance
-/// along a normal falls with the square of its angle as well, times a stiffness that is taken for a part of the size.
+/// along a normal also falls with the square of its angle, times a stiffness, for which a part of the size is taken.
 fn reach<S: Scalar>(size: S, gap: S, error: S) -> S {
     let error = error.max(S::EPSILON * size * S::from_f64(4.0));
     let over = if gap > S::ZERO { gap } else { size * S::from_f64(1.0 / 16.0) };

@@ -11,15 +11,15 @@ use crate::{
     Distance, Impact, Ray, RayHit, RigidMotion, SignedDistance, SignedDistanceOptions, Trajectory, signed_distance,
 };
 
-/// How far overlapping bodies are pushed into one another to test for another way out, as a part of their size, in
-/// units of the square root of ε. If bodies are farther apart than this at a hit, the cast had a target distance.
+/// How far overlapping bodies are pushed into one another to test for another direction out, as a part of their size,
+/// in units of the square root of ε. If bodies are farther apart than this at a hit, the cast had a target distance.
 const LITTLE: f64 = 64.0;
 
-/// How much a push may gain: at most so many times its square, in units of the size, and at most this part of the size,
-/// which leaves room for single precision.
+/// How much a push may gain: at most this multiple of its square, in units of the size, and at most this part of the
+/// size, which leaves room for single precision.
 const GAIN: [f64; 2] = [256.0, 1e-4];
 
-/// If the cosine of the angle between two normals is at least this, they belong to the same way out.
+/// If the cosine of the angle between two normals is at least this, they are the same direction out.
 const SAME_NORMAL: f64 = 1.0 - 1e-6;
 
 fn little<S: Scalar>(size: S) -> S {
@@ -66,7 +66,7 @@ impl<V: Vector> SignedDistance<V> {
             ClosestPoints { normal, points: [point_a, point_b], signed_distance, error: upper - lower, is_near: false };
         let mut features = features_at(a, b, closest);
         let cores = [a.core(), b.core()];
-        // By the lower bound, since cores that touch may seem a rounding apart.
+        // By the lower bound, because cores that touch may seem to be a rounding apart.
         if lower + cores[0].radius + cores[1].radius <= Scalar::ZERO {
             features.is_tied = is_tied(self, cores, a, b);
         }
@@ -91,8 +91,8 @@ compiled_once! {
 compiled_once! {
     /// Whether another normal is as good. If `a` is moved by `−η·n`, the signed distance along any normal `m` falls by
     /// `η·n·m`. So if another normal was as good to within `η·(1 − n·m)`, it is now the best, is found, and can be
-    /// measured. Whatever its bracket leaves open may be a tie. If the bodies are curved, the other normal turns a
-    /// little as they are pushed, which gains `η²` over twice the stiffness.
+    /// measured. Any normal that its bracket does not exclude may be a tie. If the bodies are curved, the other normal
+    /// turns a little as they are pushed, which gains `η²` over twice the stiffness.
     fn is_tied<V>(answer: &SignedDistance<V>, cores: [Core<V>; 2], a: Shape<'_, V>, b: Shape<'_, V>) -> bool {
         let [core_a, core_b] = cores;
         let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
@@ -177,15 +177,15 @@ compiled_once! {
         let closing = normal.dot(b.1.velocity(time, point) - a.1.velocity(time, point));
         let (a, b) = (at_time(a, time), at_time(b, time));
         let zero = V::Scalar::ZERO;
-        // They are as far apart as the target distance of the cast, which the hit does not know, or not at all.
+        // They are apart by the target distance of the cast, which the hit does not store, or touch.
         let (core_a, core_b) = (a.core(), b.core());
         let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
         let gap = normal.dot(a.support(-normal) - b.support(normal));
-        // What is not on purpose is what the time or the normal are wrong by.
+        // A gap that was not asked for is the error of the time or of the normal.
         let [apart, error] = if gap > little(size) { [gap, zero] } else { [zero, gap.abs()] };
         let points = [point + normal * apart, point];
         let closest = ClosestPoints { normal, points, signed_distance: apart, error, is_near: true };
-        // At the start they were as far from contact as they have come nearer since.
+        // The bodies have come nearer by their distance at the start.
         let is_at_floor = !(closing * time > size * rounding());
         Some(ClosestFeatures { is_at_floor, ..ClosestFeatures::new([&a, &b], closest) })
     }

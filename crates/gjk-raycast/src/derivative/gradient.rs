@@ -116,7 +116,7 @@ impl<V: Vector> SignedDistance<V> {
 fn at_contact<V: Vector>(normal: Option<V>, velocity: V, point: V) -> Option<MotionGradient<V>> {
     let closing = -normal?.dot(velocity);
     let force = normal? / closing;
-    // Also where the quotient overflows, or something is NaN.
+    // Also if the quotient overflows, or a number is NaN.
     (closing > V::Scalar::ZERO && force.is_finite()).then_some(MotionGradient::force(force, point))
 }
 
@@ -159,7 +159,7 @@ impl<V: Vector> RayHit<V> {
     /// ```
     #[must_use]
     pub fn gradient(&self, ray: Ray<V>) -> Option<RayCastGradient<V>> {
-        // The point of the ray is the body that moves, and is at rest where the target is.
+        // The point of the ray is the moving body, and the target is at rest.
         let contact = at_contact(self.normal, ray.direction, self.point)?;
         Some(RayCastGradient {
             target: contact.reversed(),
@@ -289,8 +289,8 @@ fn at_start<V: Vector>(
     MotionGradient::force(turned_back, start_of(&displacement, force.point))
 }
 
-/// Where the point that a displacement takes to `x` was at the start. With `P` the pivot and `s` its shift,
-/// `x = P + s + R·(x₀ − P)`, so that a change of the start pose is turned: `δx = R·δx₀`.
+/// The place at the start of the point that a displacement takes to `x`. With `P` the pivot and `s` its shift, `x = P +
+/// s + R·(x₀ − P)`, so that a change of the start pose is turned: `δx = R·δx₀`.
 pub(super) fn start_of<V: Vector>(displacement: &Displacement<V>, x: V) -> V {
     displacement.pivot + displacement.rotation().transpose_mul(x - displacement.pivot - displacement.shift)
 }
@@ -315,7 +315,7 @@ impl<V: Vector> RigidMotion<V> {
     /// > Jᵀ = 1 − (1 − cos|θ|)/|θ|²·θ× + (|θ| − sin|θ|)/|θ|³·(θ×)².
     pub fn gradient(&self, time: V::Scalar, force: MotionGradient<V>) -> RigidMotionGradient<V> {
         let moment = force.rotation_about(self.center + self.velocity * time);
-        // δc − R·δc, by what the rotation adds.
+        // δc − R·δc, by the change that the rotation adds.
         let turn = self.angular_velocity.turn(time);
         RigidMotionGradient {
             velocity: force.translation * time,
@@ -344,7 +344,7 @@ fn pulled_back<V: Vector>(
     V::AngularVelocity::from_coordinates(|i| pulled.get(i))
 }
 
-/// `(1 − cos x)/x² = ½·(sin(x/2)/(x/2))²` and `(x − sin x)/x³`, which is summed where the difference would cancel.
+/// `(1 − cos x)/x² = ½·(sin(x/2)/(x/2))²` and `(x − sin x)/x³`, by its series if the difference would cancel.
 fn jacobian_coefficients<S: Scalar>(x: S) -> [S; 2] {
     let (half, one) = (S::from_f64(0.5), S::ONE);
     let sinc = if x > S::ZERO { sin_cos(x * half).0 / (x * half) } else { one };
@@ -352,7 +352,7 @@ fn jacobian_coefficients<S: Scalar>(x: S) -> [S; 2] {
     if x > one {
         return [first, (x - sin_cos(x).0) / (x * x * x)];
     }
-    // Σ (−x²)ᵏ/(2k + 3)!, of which the first term left out is 1/17!.
+    // Σ (−x²)ᵏ/(2k + 3)!; the first term left out is 1/17!.
     let mut sum = S::ZERO;
     for k in (1..8).rev() {
         let factor = f64::from((2 * k + 2) * (2 * k + 3));

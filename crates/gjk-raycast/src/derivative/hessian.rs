@@ -88,7 +88,7 @@ impl<V: Vector> ClosestFeatures<V> {
         Some(MotionHessian::from_rows(rows, self.is_hessian_unique()))
     }
 
-    /// The coordinates of the pose of a body. Of a turn `ω` the part along a unit vector `e` is `e·(ω × arm) = ω·(arm ×
+    /// The coordinates of the pose of a body. The part of a turn `ω` along a unit vector `e` is `e·(ω × arm) = ω·(arm ×
     /// e)`, which is that of a moment.
     #[inline]
     fn coordinates(&self, body: usize, center: V) -> Coordinates<V::Scalar> {
@@ -115,15 +115,15 @@ struct Coordinates<S> {
     turn: [[S; MAX]; 2],
 }
 
-/// What unit velocities of the closest material point of a body across the normal do, and unit turns of the normal by
-/// it: with them it is known what every coordinate of the pose of the body does.
+/// The effects of unit velocities of the closest material point of a body across the normal, and of its unit turns of
+/// the normal. The effect of every coordinate of the body's pose follows from them.
 struct Responses<S> {
     velocities: [Shifted<S>; 2],
     turns: [Shifted<S>; 2],
 }
 
-/// What the coordinates of a pose do, along either unit vector across the normal: how they turn the normal, and by what
-/// the point of a body moves more than the centre of that.
+/// The effects of the coordinates of a pose, along either unit vector across the normal: how they turn the normal, and
+/// how much farther the point of a body moves than its centre.
 struct MovedCoordinates<S> {
     normal: [[S; MAX]; 2],
     shift: [[S; MAX]; 2],
@@ -143,7 +143,7 @@ impl<V: Vector> Solver<'_, V> {
 }
 
 impl<S: Scalar> Responses<S> {
-    /// What the coordinates of the pose of the body do, with the point of the body of that index.
+    /// The effects of the coordinates of the body's pose, with the point of the body of that index.
     #[inline]
     fn moved(&self, coordinates: &Coordinates<S>, index: usize) -> MovedCoordinates<S> {
         let Coordinates { velocity: [v, w], turn: [t, u] } = coordinates;
@@ -160,8 +160,8 @@ impl<S: Scalar> Responses<S> {
         MovedCoordinates { normal: both(all.map(|of| of.normal)), shift: both(all.map(|of| of.shifts[index])) }
     }
 
-    /// The Hessian by the pose of the body. Of two rotations it is the symmetric part of `Q`; what a rotation does
-    /// along a translation, which turns nothing, is `n′·v`.
+    /// The Hessian by the pose of the body. For two rotations it is the symmetric part of `Q`; for a rotation and a
+    /// translation, which turns nothing, it is `n′·v`.
     #[inline]
     fn hessian<V: Vector<Scalar = S>>(&self, coordinates: &Coordinates<S>, body: usize) -> Rows<S> {
         let MovedCoordinates { normal: [n, m], shift: [a, b] } = self.moved(coordinates, body);
@@ -175,7 +175,7 @@ impl<S: Scalar> Responses<S> {
             }
         }
         for i in V::DIM..MotionHessian::<V>::SIZE {
-            // A turn about the centre moves the material point, and the point that is closest with it.
+            // A turn about the centre moves the material point, and with it the closest point.
             let (a, b) = (a[i] + v[i], b[i] + w[i]);
             for j in V::DIM..MotionHessian::<V>::SIZE {
                 let along = (n[i] * v[j] + m[i] * w[j] - (a * t[j] + b * u[j])) * (half * sign);

@@ -1,4 +1,4 @@
-//! What two bodies show each other along a normal, and how they curve there.
+//! The features of two bodies along a normal, and their curvatures there.
 
 use convex_support::{Core, CoreKind, Feature, Hint, Scalar, Vector};
 use num_traits::Float as _;
@@ -10,18 +10,18 @@ use crate::shape::Shape;
 use crate::symmetric::{Across, Symmetric, axes_across, dot};
 use crate::unit::reciprocal_of_power;
 
-/// How far a direction is turned to see which curve an edge between two of them belongs to, and where a support point
-/// goes, in units of the square root of ε.
+/// The angle by which a direction is turned to find the curves between which an edge lies, and how a support point
+/// moves, in units of the square root of ε.
 const TURN: f64 = 16.0;
 
-/// By how much a support point may differ from where its curvature predicts it, as a part of how far that moves.
+/// How much a support point may differ from the prediction by its curvature, as a part of its predicted motion.
 const SURPRISE: f64 = 0.25;
 
-/// The curves at the ends of an edge are the same if they bend alike to this part of their sum.
+/// The curves at the ends of an edge are the same if their bends agree to this part of their sum.
 const ALIKE: f64 = 1.0 / 64.0;
 
 impl<V: Vector> Bodies<'_, V> {
-    /// Before anything was looked at.
+    /// The features before the first are found.
     pub(super) fn unseen(&self) -> ClosestFeatures<V> {
         let zero = V::ZERO;
         ClosestFeatures {
@@ -43,13 +43,12 @@ impl<V: Vector> Bodies<'_, V> {
         }
     }
 
-    /// Sees the features along the normal, which may be wrong by `tilt`. Outlines are long: features are seen where
-    /// they stay, not moved there.
+    /// Finds the features along the normal, which may be wrong by `tilt`. Outlines are large, and so filled in place
+    /// rather than moved.
     pub(super) fn look(&self, features: &mut ClosestFeatures<V>, closest: ClosestPoints<V>, tilt: V::Scalar) {
         let ClosestPoints { normal, points, signed_distance, .. } = closest;
         let (unit, half) = (self.unit, V::Scalar::from_f64(0.5));
-        // In the unit; zero is the middle of the closest points, which is on both sides of the plane that outlines are
-        // seen in.
+        // In the unit; zero is the middle of the closest points, which is on both sides of the plane of the outlines.
         let plane = ContactPlane { normal, across: axes_across(normal), origin: V::ZERO };
         let middle = points[0] * half + points[1] * half;
         (features.normal, features.across, features.points, features.middle) = (normal, plane.across, points, middle);
@@ -63,18 +62,18 @@ impl<V: Vector> Bodies<'_, V> {
         }
     }
 
-    /// Whether the support points nearby are where the Hessians say.
+    /// Whether the Hessians predict the support points nearby.
     pub(super) fn are_foretold(&self, at: &ClosestFeatures<V>) -> bool {
         (0..2).all(|i| is_foretold(self.shapes[i], &self.cores[i], [-at.normal, at.normal][i], at, i))
     }
 }
 
-/// How far a direction is turned to look nearby.
+/// The angle by which a direction is turned to test directions nearby.
 fn turn<S: Scalar>(tilt: S) -> S {
     (S::EPSILON.sqrt() * S::from_f64(TURN)).max(tilt * S::from_f64(4.0))
 }
 
-/// From where the bodies are seen.
+/// The frame in which outlines are drawn.
 struct Viewpoint<V: Vector> {
     tilt: V::Scalar,
     middle: V,
@@ -82,7 +81,7 @@ struct Viewpoint<V: Vector> {
     plane: ContactPlane<V>,
 }
 
-/// Draws the outline of what a body shows along a direction.
+/// Draws the outline of a body's feature along a direction.
 fn draw<V: Vector>(
     outline: &mut Outline<V::Scalar>,
     body: Shape<'_, V>,
@@ -94,16 +93,16 @@ fn draw<V: Vector>(
     let mut feature = Feature::new();
     body.core_support_feature(direction, from.tilt * core.extent * Scalar::from_f64(2.0), &mut feature);
     if feature.points().is_empty() {
-        // Where numbers are not finite.
+        // If numbers are not finite.
         feature.push(body.core_support(direction, &mut Hint::new()), 0);
     }
     feature.map(|point| point * per_unit);
     outline.draw(&feature, (core.origin - from.middle) * per_unit, &from.plane);
 }
 
-/// The Hessian of the support value of a body across a direction, along which it shows a feature; that of its radius
-/// included. And whether the feature is an edge that turns with the direction, as the side of a cone: the curves at its
-/// ends are not the same.
+/// The Hessian of the support value of a body across a direction, along which it has a feature; that of its radius
+/// included. Also whether the feature is an edge that turns with the direction, as the side of a cone: the curves at
+/// its ends differ.
 fn hessian<V: Vector>(
     body: Shape<'_, V>,
     core: &Core<V>,
@@ -123,7 +122,7 @@ fn hessian<V: Vector>(
         Span::Edge(e) if matches!(core.kind, CoreKind::Curved) => {
             let edge = from.plane.across[0] * e.0 + from.plane.across[1] * e.1;
             let turn = turn(from.tilt);
-            // Of the curves on either side, from two directions each.
+            // From the curves on either side, by two directions each.
             let [first, second] = [-turn, turn].map(|turn| {
                 let [near, far] = [turn, turn + turn].map(|turn| along(direction + edge * turn));
                 near.blend(far, -V::Scalar::ONE)
@@ -138,26 +137,26 @@ fn hessian<V: Vector>(
     (hessian, false)
 }
 
-/// How far along an edge the point of contact is, which is at zero: as a part of its length.
+/// How far along an edge the point of contact is, which is at zero, as a part of its length.
 fn share<S: Scalar>(outline: &Outline<S>, e: Across<S>) -> S {
     let [from, to] = [&outline.corners[0], &outline.corners[outline.corners.len() - 1]].map(|corner| dot(corner.at, e));
     (-from / (to - from)).max(S::ZERO).min(S::ONE)
 }
 
-/// What of a Hessian is across a unit vector. Along the edge itself a support point is free.
+/// The part of a Hessian across a unit vector. Along the edge itself a support point is free.
 fn across_edge<S: Scalar>(hessian: Symmetric<S>, e: Across<S>) -> Symmetric<S> {
     let (f, bend) = ((-e.1, e.0), bend(hessian, e));
     Symmetric { a: bend * f.0 * f.0, b: bend * f.0 * f.1, d: bend * f.1 * f.1 }
 }
 
-/// How much of a Hessian is across a unit vector.
+/// The size of the part of a Hessian across a unit vector.
 fn bend<S: Scalar>(hessian: Symmetric<S>, e: Across<S>) -> S {
     let f = (-e.1, e.0);
     dot(f, hessian.times(f))
 }
 
-/// Whether the support points of a body along directions near that of the other are where its Hessian says. They are
-/// not where a shape does not say how it curves, or which face it shows.
+/// Whether the Hessian of a body predicts its support points along directions near that of the other one. It does not
+/// if the shape does not return its curvature, or its faces.
 fn is_foretold<V: Vector>(
     body: Shape<'_, V>,
     core: &Core<V>,

@@ -1,4 +1,4 @@
-//! Where the features of two bodies overlap, seen along the normal.
+//! The overlap of the features of two bodies, projected along the normal.
 //!
 //! It is never empty, since the closest points are in it, but often it has no area: boxes side by side have the edges
 //! of their faces in common, and boxes across a corner only the corners. Therefore a corner within rounding of a line
@@ -20,12 +20,12 @@ const MAX_CUTS: usize = 48;
 pub(super) struct Overlap<S: Scalar> {
     corners: SmallVec<[Across<S>; 32]>,
     rims: [Option<Ellipse<S>>; 2],
-    /// What is no farther from a line is on it.
+    /// A point no farther than this from a line is on it.
     slack: S,
 }
 
 impl<S: Scalar> Overlap<S> {
-    /// Of two features that are no vertices, nor edges that cross.
+    /// The overlap of two features, neither of them a vertex, and not edges that cross.
     pub(super) fn of([a, b]: &[Outline<S>; 2], slack: S) -> Self {
         // A segment is cut by a polygon.
         let (own, other) = if a.corners.len() > b.corners.len() { (b, a) } else { (a, b) };
@@ -44,8 +44,8 @@ impl<S: Scalar> Overlap<S> {
         overlap
     }
 
-    /// The least value of a function that has it at a corner of any polygon, as a linear one and a quotient of two;
-    /// `None` if there is no corner.
+    /// The least value of a function whose minimum over any polygon is at a corner, as for a linear one and a quotient
+    /// of two; `None` if there is no corner.
     pub(super) fn least(mut self, value: impl Fn(Across<S>) -> S) -> Option<S> {
         for _ in 0..MAX_CUTS {
             let (at, least) = self.least_corner(&value)?;
@@ -62,7 +62,7 @@ impl<S: Scalar> Overlap<S> {
         values.reduce(|least, other| if other.1 < least.1 { other } else { least })
     }
 
-    /// Where a point is outside an ellipse, the unit vector to it, in coordinates in which that is the unit circle.
+    /// If a point is outside an ellipse, the unit vector to it, in coordinates in which the ellipse is the unit circle.
     fn tangent(&self, rim: &Ellipse<S>, at: Across<S>) -> Option<Across<S>> {
         let p = of_circle(rim, at);
         let length = dot(p, p).sqrt();
@@ -70,7 +70,7 @@ impl<S: Scalar> Overlap<S> {
         is_outside.then(|| (p.0 / length, p.1 / length))
     }
 
-    /// Keeps what is on one side of a line, by the signed distance from it.
+    /// Keeps the part on one side of a line, by the signed distance from it.
     fn cut(&mut self, inside: impl Fn(Across<S>) -> S) {
         let corners = core::mem::take(&mut self.corners);
         for (i, &from) in corners.iter().enumerate() {
@@ -105,7 +105,7 @@ fn gap<S: Scalar>([a, b]: &[Outline<S>; 2], u: Across<S>) -> S {
     (of_a[0] - of_b[1]).max(of_b[0] - of_a[1])
 }
 
-/// Directions of which two features that do not overlap are apart along at least one: those across the edges of both,
+/// Directions such that two features that do not overlap are apart along at least one: those across the edges of both,
 /// and those from the centre of a disc to the corners of the other.
 fn axes<S: Scalar>([a, b]: &[Outline<S>; 2]) -> SmallVec<[Across<S>; 16]> {
     let edge = |outline: &Outline<S>| match outline.corners[..] {

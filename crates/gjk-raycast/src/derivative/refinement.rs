@@ -12,18 +12,17 @@ use super::span::Span;
 const LONGEST_STEP: f64 = 0.1;
 const MAX_STEPS: usize = 5;
 
-/// The number of rounds in which features are tried that may hold the normal, and the angle of each round as a part of
-/// that of the last.
+/// The number of rounds in which features that may hold the normal are tried, and the angle of each round as a part of
+/// the last one's.
 const ROUNDS: usize = 4;
 const NEARER: f64 = 1.0 / 16.0;
 
 impl<V: Vector> Bodies<'_, V> {
-    /// Looks for a normal, within the angle `reach` of that of an answer, along which the features overlap, as the
-    /// closest points require. Returns whether there is one; features within the angle `tilt` count as held by
-    /// rounding.
+    /// Searches for a normal, within the angle `reach` of an answer's, along which the features overlap, as the closest
+    /// points require. Returns whether there is one; features within the angle `tilt` count as held by rounding.
     ///
     /// Every feature found within `reach` is tried by making the normal exactly across it. If none fits, as when the
-    /// answer is at an edge of a face within reach, features within a smaller angle are tried.
+    /// answer is at an edge of a face within that angle, features within a smaller angle are tried.
     pub(super) fn settle(
         &self,
         features: &mut ClosestFeatures<V>,
@@ -39,7 +38,7 @@ impl<V: Vector> Bodies<'_, V> {
             }
             self.look(features, closest, within);
             if features.spans == [Span::Vertex; 2] {
-                // They are so within less.
+                // They are vertices within `tilt` too.
                 features.tilt = tilt;
                 return self.refine(features, closest);
             }
@@ -51,11 +50,11 @@ impl<V: Vector> Bodies<'_, V> {
         false
     }
 
-    /// Turns the normal to be exactly across the features seen. Returns whether there is such a normal along which the
+    /// Turns the normal to be exactly across the features found. Returns whether there is such a normal along which the
     /// features overlap.
     fn hold(&self, seen: &mut ClosestFeatures<V>, closest: ClosestPoints<V>, reach: V::Scalar) -> bool {
         let radii = self.cores.map(|core| core.radius);
-        // Whether the features along another normal are of these kinds, where that is asked, and overlap.
+        // Whether the features along another normal overlap, and are of these kinds if given.
         let is_kept = |seen: &mut ClosestFeatures<V>, normal: V, tilt, kinds: [Option<usize>; 2]| {
             let Some(normal) = normal.unit() else { return false };
             if !((normal - closest.normal).length() <= reach + reach) {
@@ -68,7 +67,7 @@ impl<V: Vector> Bodies<'_, V> {
         for _ in 0..MAX_STEPS {
             let kinds = seen.spans.map(Span::kind);
             let Some(step) = seen.newton_step(radii) else {
-                // A face holds all of the normal, and of two edges that are parallel each a part.
+                // A face determines the normal, and each of two parallel edges a part of it.
                 let normals = [0, 1].map(|i| {
                     let turn = seen.spans[i].turn(&seen.outlines[i]);
                     seen.normal + seen.out_of_plane(turn)
@@ -77,7 +76,7 @@ impl<V: Vector> Bodies<'_, V> {
                 return (kinds[0] == most && is_kept(seen, normals[0], rounding(), [Some(most), None]))
                     || (kinds[1] == most && is_kept(seen, normals[1], rounding(), [None, Some(most)]));
             };
-            // A step of Newton's method leaves the square of what it takes away.
+            // A step of Newton's method leaves the square of the error that it removes.
             let left = step.turn.length() * step.turn.length();
             if !is_kept(seen, seen.normal + step.turn, rounding::<V::Scalar>() + left, kinds.map(Some)) {
                 return false;
@@ -103,7 +102,7 @@ impl<V: Vector> Bodies<'_, V> {
             }
             let shifts = [0, 1].map(|i| (step.points[i] - best.points[i]).length());
             best.points = step.points;
-            // An answer knows the distance to its tolerance; to that of rounding, it stays.
+            // The distance is only right to the tolerance; if that is rounding, it stays.
             let error = (step.signed_distance - best.signed_distance).abs();
             if error > rounding() {
                 best.signed_distance = step.signed_distance;
@@ -113,9 +112,8 @@ impl<V: Vector> Bodies<'_, V> {
             }
             let Some(normal) = (best.normal + step.turn).unit() else { return false };
             if size <= rounding() && shifts[0].max(shifts[1]) <= self.unit * rounding() {
-                // The features along this normal are those that were seen, to rounding, and in the coordinates in which
-                // they were seen: another basis may be a quarter turn away where two coordinates of the normal are
-                // equal.
+                // The features along this normal are those found before, to rounding, and in the same coordinates:
+                // another basis may be a quarter turn away if two coordinates of the normal are equal.
                 best.normal = normal;
                 break;
             }

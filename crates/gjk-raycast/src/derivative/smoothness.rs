@@ -64,11 +64,11 @@ impl<V: Vector> ClosestFeatures<V> {
         let stiffness = self.stiffness();
         let least = V::Scalar::EPSILON * V::Scalar::from_f64(64.0);
         let is_stiff = |e| dot(e, stiffness.times(e)) > least;
-        // In which directions the normal could turn without leaving an edge or a face of either body.
+        // The directions in which the normal could turn without leaving an edge or a face of either body.
         let is_held = match (self.joint(), self.spans) {
             (Some(DifferenceSpan::None), _) if V::DIM == 2 => stiffness.a > least,
             (Some(DifferenceSpan::None), _) => least_eigenvalue(stiffness) > least,
-            // Across an edge, or parallel ones.
+            // Across an edge, or parallel edges.
             (Some(DifferenceSpan::Edge(_, e)), _) | (None, [Span::Edge(e), Span::Edge(_)]) => {
                 V::DIM == 2 || is_stiff((-e.1, e.0))
             }
@@ -79,9 +79,9 @@ impl<V: Vector> ClosestFeatures<V> {
         is_held && is_finite && !self.is_at_a_corner(least) && !self.is_tied
     }
 
-    /// Whether cores that touch do so at the boundary of their features, as a box that stands beside another: so that
-    /// the normal may turn away from them. Bodies apart have the normal of their closest points, and those that overlap
-    /// that of the way out.
+    /// Whether cores that touch do so at the boundary of their features, as a box that stands beside another, so that
+    /// the normal may turn away from them. Bodies apart have the normal of their closest points, and bodies that
+    /// overlap that of the direction out.
     fn is_at_a_corner(&self, least: V::Scalar) -> bool {
         let gap = self.signed_distance + self.radii[0] + self.radii[1];
         let stiffness = self.stiffness();
@@ -167,6 +167,6 @@ fn least_eigenvalue<S: Scalar>(matrix: Symmetric<S>) -> S {
     let half = S::from_f64(0.5);
     let (mean, difference) = ((matrix.a + matrix.d) * half, (matrix.a - matrix.d) * half);
     let greatest = mean + hypot(difference, matrix.b);
-    // The product of both is the determinant.
+    // The product of both eigenvalues is the determinant.
     if greatest > S::ZERO { matrix.determinant() / greatest } else { mean - hypot(difference, matrix.b) }
 }

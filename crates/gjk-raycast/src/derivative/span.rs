@@ -7,7 +7,7 @@ use crate::contact::Outline;
 use crate::symmetric::{Across, cross};
 
 /// The directions in the plane across a normal in which a body's supporting feature extends: those of a vertex, of an
-/// edge (a unit vector), or of a face. In 2D an edge is all there can be.
+/// edge (a unit vector), or of a face. In 2D there is no more than an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Span<S> {
     Vertex,
@@ -33,7 +33,7 @@ impl<S: Scalar> Span<S> {
         }
     }
 
-    /// The turn of the normal that makes it exactly across the feature, where that is an edge or a face.
+    /// The turn of the normal that makes it exactly across the feature, if that is an edge or a face.
     pub(super) fn turn(self, outline: &Outline<S>) -> Across<S> {
         let zero = (S::ZERO, S::ZERO);
         let slope = |(x, y): Across<S>| {
@@ -51,8 +51,8 @@ impl<S: Scalar> Span<S> {
     }
 }
 
-/// The directions in which the difference of two features extends, where each of them is one way only of moving their
-/// points: then the points are the only ones.
+/// The directions in which the difference of two features extends, if different features extend in different
+/// directions: then the points are the only ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum DifferenceSpan<S> {
     /// Two vertices.
@@ -66,7 +66,7 @@ pub(super) enum DifferenceSpan<S> {
 }
 
 impl<S: Scalar> DifferenceSpan<S> {
-    /// `None` where both features extend the same way. Edges are parallel where the sine of their angle is no more than
+    /// `None` if both features extend in one direction. Edges are parallel if the sine of their angle is no more than
     /// `parallel`.
     pub(super) fn of(spans: [Span<S>; 2], parallel: S) -> Option<Self> {
         match spans {

@@ -89,8 +89,8 @@ impl<V: Vector> ClosestFeatures<V> {
         Some(Solver { at: self, stiffness: self.stiffness(), joint: self.joint()? })
     }
 
-    /// A step of Newton's method for the normal and the points: that which would be made if the bodies were moved so
-    /// that the closest points, now `r` off across the normal, are opposite to each other.
+    /// A step of Newton's method for the normal and the points: their change if the bodies were moved so that the
+    /// closest points, now `r` apart across the normal, become opposite to each other.
     pub(super) fn newton_step(&self, radii: [V::Scalar; 2]) -> Option<NewtonStep<V>> {
         let solver = self.solver()?;
         let [a, b] = [0, 1].map(|i| self.outlines[i].corners[0]);
@@ -103,9 +103,9 @@ impl<V: Vector> ClosestFeatures<V> {
         Some(NewtonStep { turn: self.out_of_plane(change), points: [point_a, point_b], signed_distance })
     }
 
-    /// How far the closest points are from being opposite to each other, if the features leave them no choice.
+    /// How far the closest points are from being opposite to each other, if the features determine them.
     pub(super) fn off(&self) -> V::Scalar {
-        // Where numbers are not finite there are no corners.
+        // If numbers are not finite there are no corners.
         let [Some(a), Some(b)] = [0, 1].map(|i| self.outlines[i].corners.first()) else { return V::Scalar::ZERO };
         let r = (a.at.0 - b.at.0, a.at.1 - b.at.1);
         match self.joint() {
@@ -127,7 +127,7 @@ impl<V: Vector> ClosestFeatures<V> {
     }
 }
 
-/// Where the normal and the closest points are, to second order.
+/// The normal and the closest points, to second order.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NewtonStep<V: Vector> {
     pub(super) turn: V,
@@ -144,7 +144,7 @@ pub(super) struct Solver<'f, V: Vector> {
     joint: DifferenceSpan<V::Scalar>,
 }
 
-/// How the normal changes, and how the closest points move along their bodies, in coordinates across the normal.
+/// The change of the normal, and the slides of the closest points along their bodies, in coordinates across the normal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shifted<S> {
     pub(super) normal: Across<S>,
@@ -152,7 +152,8 @@ pub(super) struct Shifted<S> {
 }
 
 impl<V: Vector> Solver<'_, V> {
-    /// By the velocity of the material point of `a` as seen from that of `b`, and how both bodies turn the normal.
+    /// By the velocity of the material point of `a` relative to that of `b`, and the turns of the normal by both
+    /// bodies.
     pub(super) fn shifted(&self, apart: Across<V::Scalar>, turns: [Across<V::Scalar>; 2]) -> Shifted<V::Scalar> {
         let (at, [turn_a, turn_b]) = (self.at, turns);
         let [hessian_a, hessian_b] = at.hessians;
@@ -165,8 +166,8 @@ impl<V: Vector> Solver<'_, V> {
         Shifted { normal, shifts: [shift_a, shift_b].map(|shift| scaled(shift, at.unit)) }
     }
 
-    /// The change of the normal, and how the points slide along edges or faces of their bodies: with `K` the stiffness
-    /// and `g = K·n′ − r`, the slide of `a` less that of `b` is `g`.
+    /// The change of the normal, and the slides of the points along edges or faces of their bodies: with `K` the
+    /// stiffness and `g = K·n′ − r`, the slide of `a` less that of `b` is `g`.
     fn solved(&self, r: Across<V::Scalar>, turns: [Across<V::Scalar>; 2]) -> Solved<V::Scalar> {
         let zero = (V::Scalar::ZERO, V::Scalar::ZERO);
         let rest = |change| {
@@ -231,7 +232,7 @@ impl<V: Vector> Solver<'_, V> {
 /// The change of the normal, and the slides of both points.
 type Solved<S> = (Across<S>, [Across<S>; 2]);
 
-/// The slides of both points, of which only one body's slides: by `g`, or for `b` by `−g`.
+/// The slides of both points if only one body's point slides: by `g`, or for `b` by `−g`.
 fn slides<S: Scalar>(body: usize, g: Across<S>) -> [Across<S>; 2] {
     let zero = (S::ZERO, S::ZERO);
     if body == 0 { [g, zero] } else { [zero, negative(g)] }
