@@ -1,4 +1,4 @@
-//! The outer loop: solve a small working set, look at all points, add the worst violators.
+//! The outer loop: solve a small working set, test all points, add the worst violators.
 
 use crate::enclosing::iterate::Iterate;
 use crate::enclosing::newton::Workspace;
@@ -18,20 +18,20 @@ const DEFAULT_ITERATIONS: usize = 2_000;
 /// The most passes over the points: each adds at least one violator, and in practice less than twenty are needed.
 const MAX_SCANS: usize = 500;
 
-/// Below this many points, forgetting some does not pay.
+/// Below this number of points, dropping some does not pay.
 const FEW: usize = 512;
 
-/// Below this gap Newton's method doubles the digits with each step, and two steps reach rounding.
+/// Below this gap Newton's method doubles the digits with each step, and two more end at rounding.
 const QUADRATIC: f64 = 1e-6;
 
-/// A gap that is rounding in any case.
+/// A gap that is certainly rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// Improves the weights of a working set until their gap over it is at most so much, in at most so many steps; answers
-/// the number of steps.
+/// Improves the weights of a working set until their gap over it is at most this, in at most so many steps; returns the
+/// number of steps.
 pub(crate) type Improve<D> = fn(&mut Iterate<D>, &mut Workspace<D>, f64, usize) -> usize;
 
-/// Solves on a working set, whose weights `improve` finds.
+/// Solves by a working set, whose weights `improve` finds.
 pub(crate) fn solve<P: Points>(
     problem: &Problem<'_, P>,
     improve: Improve<P::Dim>,
@@ -42,7 +42,7 @@ pub(crate) fn solve<P: Points>(
     let mut search = Search::new(problem, improve, start)?;
     let newton = options.method == EnclosingMethod::Newton;
     if search.complete && newton {
-        // A few points are a working set that needs no pass: straight to rounding, and the final check.
+        // A few points are a working set that needs no pass: they are solved to rounding, and checked at the end.
         search.improve(ROUNDING, search.max_iterations);
         observer(search.at.observed(search.at.moments.log_det_gap()));
         let solved = search.finish(Status::Converged)?;
@@ -62,8 +62,8 @@ pub(crate) fn solve<P: Points>(
             if !polishing || gap <= floor.max(ROUNDING) || gap > QUADRATIC {
                 return search.finish(Status::Converged);
             }
-            // Two more steps cost little. The final check, which looks at all points anyway, tells whether they served;
-            // if ever they did not, the loop goes on without them.
+            // Two more steps cost little. The final check, which tests all points anyway, shows whether they helped; if
+            // they did not, the loop goes on without them.
             polishing = false;
             search.at.add(points, &violators.found);
             if !search.at.update() {
@@ -84,7 +84,7 @@ pub(crate) fn solve<P: Points>(
     }
 }
 
-/// The working set and what steers it.
+/// The working set and the state that controls it.
 struct Search<'a, P: Points> {
     points: &'a P,
     options: EnclosingOptions,
@@ -92,15 +92,15 @@ struct Search<'a, P: Points> {
     improve: Improve<P::Dim>,
     at: Iterate<P::Dim>,
     work: Workspace<P::Dim>,
-    /// The working set is all points.
+    /// Whether the working set is all points.
     complete: bool,
-    /// What is asked of a working set: a little below the gap over all points seen last…
+    /// The gap required of a working set: a little below the last gap over all points…
     inner_gap: f64,
     /// …and no less than this.
     tight: f64,
-    /// How far the next iterate is expected to fall short; only the share of points forgotten depends on it.
+    /// The expected κ of the next iterate; only the share of points dropped depends on it.
     expected: f64,
-    /// The points that may still touch, once they are few.
+    /// The points that may still touch, once there are few.
     pool: Option<Survivors<P::Dim>>,
 }
 
@@ -110,7 +110,7 @@ impl<'a, P: Points> Search<'a, P> {
         let Start { frame, working, weights, scans } = start;
         let complete = working.len() == points.len();
         let mut at = Iterate::new(points, rank, frame, WorkingSet::new(working, weights), scans)?;
-        // The starting frame may be skew: rather than compute in it, move to where the weights' ellipsoid is round.
+        // The starting frame may be skew: compute in the one in which the weights' ellipsoid is round.
         let diagonal = at.moments.factor.as_ref().iter().step_by(rank.get() + 1);
         let (least, most) = diagonal.fold((f64::INFINITY, 0.0), |(l, m): (f64, f64), &d| (l.min(d), m.max(d)));
         if least < 0.05 * most {
@@ -136,13 +136,13 @@ impl<'a, P: Points> Search<'a, P> {
         self.max_iterations - self.at.iterations
     }
 
-    /// Improves the weights of the working set, and moves to where their ellipsoid is the unit ball.
+    /// Improves the weights of the working set, and moves to the frame in which their ellipsoid is the unit ball.
     fn improve(&mut self, gap: f64, max_steps: usize) {
         self.at.iterations += (self.improve)(&mut self.at, &mut self.work, gap, max_steps);
         self.at.recenter(self.points);
     }
 
-    /// Looks at all points, or at the survivors of an earlier look.
+    /// Tests all points, or the survivors of an earlier pass.
     fn look(&mut self) -> Violators {
         let Some(survivors) = &mut self.pool else {
             self.at.scans += 1;
@@ -161,22 +161,22 @@ impl<'a, P: Points> Search<'a, P> {
         violators
     }
 
-    /// The unit ball of the frame grown to κ against the bound of the weights: r·ln κ + (−ln det S − r·ln r).
+    /// The gap of the unit ball of the frame grown to κ: r·ln κ + (−ln det S − r·ln r).
     fn gap(&self, violators: &Violators) -> f64 {
         let r = self.at.rank.get() as f64;
         r * libm::log(violators.furthest / r) - self.at.moments.log_det_scatter
     }
 
-    /// Below what the rounding of the coordinates does to the gap there is nothing to gain.
+    /// The effect of the coordinates' rounding on the gap; a smaller gap cannot be reached.
     fn rounding(&self) -> f64 {
         self.at.rank.get() as f64 * self.at.set.coordinate_error(self.points, &self.at.frame)
     }
 
-    /// Exchanges members that are well inside for violators; false where there is nothing left to try.
+    /// Exchanges members that are well inside for violators; false if there is nothing left to try.
     fn grow(&mut self, violators: &Violators, gap: f64) -> bool {
         let r = self.at.rank.get();
         self.expected = r as f64 + 0.3 * (violators.furthest - r as f64);
-        // Points without weight that are well inside will hardly come back; those that do are found again.
+        // Points without weight that are well inside seldom return; those that do are found again.
         if !self.complete {
             let q = &self.at.moments.q;
             self.at.set.retain(r, |i, u| u > 0.0 || q[i] > 0.95 * r as f64);
@@ -201,8 +201,8 @@ impl<'a, P: Points> Search<'a, P> {
     }
 }
 
-/// How many of `len` points may survive a pass for it to pay to go on with them alone: their copy stays well below the
-/// size of the input.
+/// How many of `len` points may survive a pass for it to pay to continue with them alone: their copy stays well below
+/// the size of the input.
 const fn capacity(len: usize) -> usize {
     if len < FEW { 0 } else { len / 4 }
 }

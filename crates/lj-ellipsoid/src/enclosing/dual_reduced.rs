@@ -16,7 +16,7 @@ use crate::numerics::linalg::{cholesky, dot, solve_lower, solve_lower_transpose}
 /// Newton steps along one path; twenty is typical.
 const MAX_STEPS: usize = 80;
 
-/// Improves the weights of `set` until the gap over it is at most `gap`; answers the number of steps.
+/// Improves the weights of `set` until the gap over it is at most `gap`; returns the number of steps.
 pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, _: &mut Workspace<D>, gap: f64, max_steps: usize) -> usize {
     let Iterate { rank, set, moments, .. } = at;
     let r = rank.get();
@@ -81,7 +81,7 @@ pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, _: &mut Workspace<D>, gap
         u.iter_mut().zip(&du).for_each(|(x, d)| *x += step * d);
         t.iter_mut().zip(&dt).for_each(|(x, d)| *x += step * d);
     }
-    // The path never reaches zero: weights that cannot matter to the gap are dropped.
+    // The path never ends at zero: weights too small for the gap are dropped.
     let sum: f64 = best.iter().sum();
     let negligible = 1e-3 * gap / k as f64;
     set.u = best.iter().map(|u| if u / sum < negligible { 0.0 } else { u / sum }).collect();

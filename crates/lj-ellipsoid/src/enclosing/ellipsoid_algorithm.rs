@@ -1,9 +1,9 @@
 //! The ellipsoid algorithm on the lifted problem, after Rimon and Boyd, corrected.
 //!
-//! In n = N + 1 dimensions, with qᵢ = (yᵢ; 1): minimise f(X) = −ln det X over symmetric X ≻ 0 with qᵢᵀXqᵢ ≤ 1. The
-//! slice of the optimal { q : qᵀXq ≤ 1 } at height one is the enclosing ellipsoid (their Lemma B.1). X lives in D =
-//! n(n + 1)/2 variables, as svec(X): the diagonal, and √2 times what is above it, so that inner products are traces.
-//!
+//! The problem has n = N + 1 dimensions, with qᵢ = (yᵢ; 1): minimise f(X) = −ln det X over symmetric X ≻ 0 with qᵢᵀXqᵢ
+//! ≤ 1. The slice of the optimal { q : qᵀXq ≤ 1 } at height one is the enclosing ellipsoid (their Lemma B.1). X has D =
+//! n(n + 1)/2 variables, as svec(X): the diagonal, and √2 times the entries above it, so that inner products are
+//! traces.
 //! Where we deviate: D is the number of variables in the update (the paper's text leaves it as the dimension); the
 //! gradients weigh off-diagonal entries twice, by svec; a cut for X ⋡ 0 takes a direction of negative curvature from
 //! the failed Cholesky factorisation in place of the eigenvector of the *least* (not "maximal") eigenvalue; the best
@@ -52,7 +52,7 @@ pub(crate) fn solve(
         let ag = forms.times(&gradient);
         let width = dot(&gradient, &ag).sqrt();
         if let Some(objective) = objective {
-            // f(X*) ≥ f(X_k) − √(gᵀA_kg): the minimum of the linearisation over the ellipsoid that holds X*.
+            // f(X*) ≥ f(X_k) − √(gᵀA_kg): the minimum of the linearisation over the ellipsoid that contains X*.
             lower_bound = lower_bound.max(objective - width);
             gap = forms.least - lower_bound;
             observer(EnclosingIterate {
@@ -90,7 +90,7 @@ pub(crate) fn solve(
     finish(points, rank, &frame, options.epsilon, ending)
 }
 
-/// An ellipsoid in the space of quadratic forms that holds the optimum, as svec: its centre X and its shape A.
+/// An ellipsoid in the space of quadratic forms that contains the optimum, as svec: its centre X and its shape A.
 struct Forms {
     /// n = r + 1.
     n: usize,
@@ -115,7 +115,7 @@ impl Forms {
         Self { n, x, a, best: Vec::new(), least: f64::INFINITY }
     }
 
-    /// The gradient of what X violates, or else of f, and then f(X).
+    /// The gradient of the constraint that X violates, or else of f, and then f(X).
     fn gradient(&mut self, y: &[f64]) -> (Vec<f64>, Option<f64>) {
         let n = self.n;
         let mut matrix = vec![0.0; n * n];
@@ -127,7 +127,7 @@ impl Forms {
         }
         let (worst, level) = furthest(n - 1, y, &matrix);
         let log_det: f64 = (0..n).map(|i| 2.0 * libm::log(factor[i * n + i])).sum();
-        // X/level is feasible and no worse than X where level ≤ 1; where level > 1 it is a candidate all the same.
+        // X/level is feasible and, if level ≤ 1, no worse than X; if level > 1 it is still a candidate.
         let value = -log_det + n as f64 * libm::log(level);
         if value < self.least {
             self.least = value;
@@ -146,8 +146,7 @@ impl Forms {
         self.a.chunks_exact(gradient.len()).map(|row| dot(row, gradient)).collect()
     }
 
-    /// X ← X − Ag̃/(D + 1), A ← D²/(D² − 1)·(A − 2/(D + 1)·Ag̃g̃ᵀA), g̃ = g/√(gᵀAg), of which A·g and the root are
-    /// given.
+    /// X ← X − Ag̃/(D + 1), A ← D²/(D² − 1)·(A − 2/(D + 1)·Ag̃g̃ᵀA), g̃ = g/√(gᵀAg); A·g and the root are given.
     fn cut(&mut self, ag: &[f64], width: f64) {
         let d = ag.len() as f64;
         let (growth, share) = (d * d / (d * d - 1.0), 2.0 / (d + 1.0));
@@ -160,8 +159,8 @@ impl Forms {
     }
 }
 
-/// The slice of the form P at height one, and what the lower bound on f proves of it: its centre is −P₁₁⁻¹P₁₂ (eq. 17),
-/// its shape proportional to P₁₁.
+/// The slice of the form P at height one, and the bound that follows for it from the lower bound on f: its centre is
+/// −P₁₁⁻¹P₁₂ (eq. 17), its shape proportional to P₁₁.
 fn slice(
     points: &Copied<Dynamic>,
     at: &mut Iterate<Dynamic>,
@@ -196,7 +195,7 @@ fn slice(
     Ok((Frame::new(origin, points.dim().matrix(rows), r), certificate))
 }
 
-/// The place of entry (i, j), i ≤ j, in svec.
+/// The index of entry (i, j), i ≤ j, in svec.
 fn svec_index(n: usize, i: usize, j: usize) -> usize {
     i * n - i * (i + 1) / 2 + j
 }
@@ -237,7 +236,7 @@ fn negative_inverse(n: usize, factor: &[f64]) -> Vec<f64> {
     g
 }
 
-/// The point of largest qᵀXq, and that value.
+/// The point with the largest qᵀXq, and that value.
 fn furthest(r: usize, y: &[f64], matrix: &[f64]) -> (usize, f64) {
     let n = r + 1;
     let mut worst = (0, f64::NEG_INFINITY);
@@ -257,8 +256,8 @@ fn furthest(r: usize, y: &[f64], matrix: &[f64]) -> (usize, f64) {
     worst
 }
 
-/// Factors X = C·Cᵀ in place, or answers v with vᵀXv ≤ 0: where pivot j fails, v = (−L⁻ᵀl, 1, 0…) with l the part of
-/// column j above the diagonal has vᵀXv equal to that pivot.
+/// Factors X = C·Cᵀ in place, or returns v with vᵀXv ≤ 0: if pivot j fails, v = (−L⁻ᵀl, 1, 0…), with l the part of
+/// column j above the diagonal, has vᵀXv equal to that pivot.
 fn negative_curvature(n: usize, matrix: &mut [f64]) -> Option<Vec<f64>> {
     let given = matrix.to_vec();
     if cholesky(Dynamic(n), matrix) {

@@ -6,13 +6,13 @@ use crate::numerics::linalg::solve_lower;
 /// The affine map y = T·(v − o) from the N coordinates of the points to the r coordinates of an iterate; r = N unless
 /// the points are flat, and then r is the dimension of their affine hull.
 ///
-/// The problem is affine invariant, so every step is taken where the current ellipsoid is the unit ball: no iterate
-/// ever meets the condition of the data.
+/// The problem is affine invariant, so every step is taken in coordinates in which the current ellipsoid is the unit
+/// ball: the condition of the data does not matter to any iterate.
 #[derive(Clone, Debug)]
 pub(crate) struct Frame<N: Dimension> {
     /// o, in the coordinates of the points.
     pub(crate) origin: N::Point,
-    /// T, r rows of N; what is below them is not used.
+    /// T, in r rows of N; the rest of the matrix is not used.
     rows: N::Matrix,
     rank: usize,
 }
@@ -23,7 +23,7 @@ impl<N: Dimension> Frame<N> {
         Self { origin, rows, rank }
     }
 
-    /// The same where the dimension is known at run time only.
+    /// The same with a dimension known only at run time.
     pub(crate) fn at_run_time(&self) -> Frame<Dynamic> {
         Frame { origin: self.origin.as_ref().to_vec(), rows: self.rows.as_ref().to_vec(), rank: self.rank }
     }
@@ -60,8 +60,8 @@ impl<N: Dimension> Frame<N> {
         }
     }
 
-    /// Moves the frame to where the ellipsoid (y − c)ᵀ(L·Lᵀ)⁻¹(y − c) ≤ 1 of this one is the unit ball:
-    /// T ← L⁻¹·T, and o ← o + Tᵀ(T·Tᵀ)⁻¹c, found by the caller as the combination of points that c is.
+    /// Moves to the frame in which this one's ellipsoid (y − c)ᵀ(L·Lᵀ)⁻¹(y − c) ≤ 1 is the unit ball: T ← L⁻¹·T, and o
+    /// ← o + Tᵀ(T·Tᵀ)⁻¹c, given by the caller as the combination of points equal to c.
     pub(crate) fn recenter(&mut self, rank: N, origin: N::Point, l: &[f64]) {
         self.origin = origin;
         let n = self.origin.as_ref().len();

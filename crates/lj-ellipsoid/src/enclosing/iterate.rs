@@ -1,4 +1,4 @@
-//! Where a method stands: a frame, weighted points in it, and what follows from the weights.
+//! The state of a method: a frame, weighted points in it, and their moments.
 
 use crate::enclosing::frame::Frame;
 use crate::enclosing::moments::Moments;
@@ -15,7 +15,7 @@ pub(crate) struct Iterate<D: Dimension> {
     pub(crate) rank: D,
     pub(crate) frame: Frame<D>,
     pub(crate) set: WorkingSet,
-    /// Those of the weights.
+    /// The moments of the weights.
     pub(crate) moments: Moments<D>,
     /// Steps of the method so far.
     pub(crate) iterations: usize,
@@ -24,7 +24,7 @@ pub(crate) struct Iterate<D: Dimension> {
 }
 
 impl<D: Dimension> Iterate<D> {
-    /// The members and weights of `set`, seen from `frame`.
+    /// The members and weights of `set`, in the coordinates of `frame`.
     pub(crate) fn new<P: Points<Dim = D>>(
         points: &P,
         rank: D,
@@ -37,7 +37,7 @@ impl<D: Dimension> Iterate<D> {
         if iterate.update() { Ok(iterate) } else { Err(EnclosingError::OutOfRange) }
     }
 
-    /// Computes the moments from the weights; false where the points with weight do not span the space.
+    /// Computes the moments from the weights; false if the points with weight do not span the space.
     pub(crate) fn update(&mut self) -> bool {
         self.moments.compute(&self.set.y, &self.set.u)
     }
@@ -50,7 +50,7 @@ impl<D: Dimension> Iterate<D> {
         self.update();
     }
 
-    /// Adds the points `found`, with weight zero; those that are members stay as they are.
+    /// Adds the points `found`, with weight zero; present members stay as they are.
     pub(crate) fn add<P: Points<Dim = D>>(&mut self, points: &P, found: &[usize]) {
         let mut v = points.dim().zero();
         let mut y = self.rank.zero();
@@ -63,7 +63,7 @@ impl<D: Dimension> Iterate<D> {
         }
     }
 
-    /// What an observer sees, with the gap over all points.
+    /// The iterate for an observer, with the gap over all points.
     pub(crate) fn observed(&self, gap: f64) -> EnclosingIterate<'_> {
         EnclosingIterate {
             iteration: self.iterations,

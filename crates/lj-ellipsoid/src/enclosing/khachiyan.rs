@@ -24,7 +24,7 @@ const REFRESH: usize = 200;
 
 /// Moves one weight per iteration, by exact line search.
 ///
-/// With ω = qᵀM⁻¹q of every point, take j₊ of largest ω, and j₋ of smallest ω among those with weight. The one further
+/// With ω = qᵀM⁻¹q of every point, take j₊ of largest ω, and j₋ of smallest ω among those with weight. The one farther
 /// from optimality (ω = n) moves: u ← (1 − β)u + β·eⱼ with β = (ωⱼ − n)/(n(ωⱼ − 1)), at least −uⱼ/(1 − uⱼ), where the
 /// weight is zero (a drop step). Then g = Q·M⁻¹qⱼ gives ω ← (ω − βg²/(1 − β + βωⱼ))/(1 − β).
 pub(crate) fn solve(
@@ -81,7 +81,7 @@ pub(crate) fn solve(
             let j = if away { minus } else { plus };
             let mut beta = (omega[j] - n) / (n * (omega[j] - 1.0));
             if away {
-                // A weight of one cannot move away; it is the only point, and then ω = 1.
+                // A weight of one cannot move away; it belongs to the only point, and then ω = 1.
                 beta = beta.max(-set.u[j] / (1.0 - set.u[j]));
             }
             if !(beta.abs() > 0.0 && beta < 1.0) {

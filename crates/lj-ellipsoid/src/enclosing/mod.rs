@@ -135,8 +135,8 @@ pub(crate) fn solve<P: Points>(
 
 /// Solves in the coordinates of a starting frame.
 ///
-/// The methods on a working set are compiled for the dimension of the points, where these span the space. All else is
-/// compiled once, for a dimension known at run time, and works on a copy of the points.
+/// If the points span the space, the methods on a working set are compiled for their dimension. All else is compiled
+/// once, for a dimension known at run time, and works on a copy of the points.
 pub(crate) fn solve_from<P: Points>(
     points: &P,
     start: Start<P::Dim>,
@@ -166,7 +166,7 @@ fn solve_at_run_time(
     }
 }
 
-/// How the methods on a working set improve its weights; `None` for the others.
+/// The function by which a method on a working set improves its weights; `None` for the others.
 fn on_working_set<D: Dimension>(method: EnclosingMethod) -> Option<Improve<D>> {
     match method {
         EnclosingMethod::Newton => Some(newton::solve),

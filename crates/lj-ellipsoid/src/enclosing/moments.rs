@@ -11,11 +11,11 @@
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{cholesky_log_det, dot, solve_lower};
 
-/// What is left of an entry on the diagonal of the scatter, relative to it, where that is more than rounding: some
-/// ninety units of the last place. If less is left, all points with weight may lie in one plane.
+/// The least remainder of a diagonal entry of the scatter, relative to it, that is more than rounding: some ninety
+/// units of the last place. If less remains, all points with weight may lie in one plane.
 const PLANE: f64 = 1e-14;
 
-/// What follows from the weights of a working set.
+/// The quantities that follow from the weights of a working set.
 #[derive(Clone, Debug)]
 pub(crate) struct Moments<D: Dimension> {
     rank: D,
@@ -31,13 +31,13 @@ pub(crate) struct Moments<D: Dimension> {
 }
 
 impl<D: Dimension> Moments<D> {
-    /// Nothing computed yet.
+    /// The moments before the first computation.
     pub(crate) fn new(rank: D) -> Self {
         let (z, q) = (Vec::new(), Vec::new());
         Self { rank, mean: rank.zero(), factor: rank.zero_matrix(), log_det_scatter: 0.0, z, q }
     }
 
-    /// Computes everything from the points `y` and weights `u`; false where the points with weight span no volume, to
+    /// Computes everything from the points `y` and weights `u`; false if the points with weight span no volume, to
     /// rounding.
     pub(crate) fn compute(&mut self, y: &[f64], u: &[f64]) -> bool {
         self.compute_scatter(y, u) && {
@@ -97,14 +97,14 @@ impl<D: Dimension> Moments<D> {
         }
     }
 
-    /// Takes over mean, scatter and determinant.
+    /// Copies mean, scatter and determinant.
     pub(crate) fn take_scatter(&mut self, other: &Self) {
         self.mean.clone_from(&other.mean);
         self.factor.clone_from(&other.factor);
         self.log_det_scatter = other.log_det_scatter;
     }
 
-    /// Forgets the members for which `keep(|z|²)` does not hold; they have no weight, so nothing else changes.
+    /// Drops the members for which `keep(|z|²)` does not hold; they have no weight, so nothing else changes.
     pub(crate) fn retain(&mut self, mut keep: impl FnMut(f64) -> bool) {
         let r = self.rank.get();
         let mut kept = 0;
@@ -119,21 +119,21 @@ impl<D: Dimension> Moments<D> {
         self.z.truncate(kept * r);
     }
 
-    /// max |zᵢ|², and who attains it.
+    /// max |zᵢ|², and the index of the point that attains it.
     pub(crate) fn furthest(&self) -> (usize, f64) {
         self.q.iter().enumerate().fold((0, f64::NEG_INFINITY), |best, (i, &q)| if q > best.1 { (i, q) } else { best })
     }
 
-    /// N·ln(κ/N), κ = max |zᵢ|²: a bound on ln det X* − ln det X where E(c, S⁻¹/κ) is the ellipsoid X and the points
-    /// are those of the working set. Below zero only by rounding.
+    /// N·ln(κ/N), κ = max |zᵢ|²: a bound on ln det X* − ln det X for the ellipsoid X = E(c, S⁻¹/κ) and the points of
+    /// the working set. Below zero only by rounding.
     pub(crate) fn log_det_gap(&self) -> f64 {
         let r = self.rank.get() as f64;
         r * libm::log(self.furthest().1 / r)
     }
 }
 
-/// Whether each pivot Lᵢᵢ² of S = L·Lᵀ is more than the rounding of the diagonal that it is left of, Sᵢᵢ = Σₖ Lᵢₖ²,
-/// which itself is a square of what is left of coordinates as large as the mean.
+/// Whether each pivot Lᵢᵢ² of S = L·Lᵀ is more than the rounding of its diagonal entry, Sᵢᵢ = Σₖ Lᵢₖ², which is itself
+/// a sum of squares of differences of coordinates as large as the mean.
 fn spans_volume(r: usize, mean: &[f64], factor: &[f64]) -> bool {
     factor.chunks_exact(r).zip(mean).enumerate().all(|(i, (row, mean))| {
         let diagonal = dot(&row[..=i], &row[..=i]);

@@ -44,9 +44,9 @@ pub struct MovingPoints<const N: usize> {
     points: Vec<[f64; N]>,
     options: EnclosingOptions,
     answer: Option<Enclosing<N>>,
-    /// The answer is that of the points as they are now.
+    /// Whether the answer is that of the present points.
     current: bool,
-    /// No change inside the ellipsoid, with the weights as they are, makes the points flat or the ellipsoid another.
+    /// Whether changes inside the ellipsoid, with the same weights, leave it as it is and the points not flat.
     steady: bool,
     solves: usize,
 }
@@ -156,7 +156,7 @@ impl<const N: usize> MovingPoints<N> {
         Ok(self.answer.insert(answer))
     }
 
-    /// Proved to be inside by more than what counts as contact, and such that this is all that matters.
+    /// Whether the point is proved to be inside by more than the tolerance of contacts, and nothing else matters.
     fn well_inside(&self, point: [f64; N]) -> bool {
         self.steady
             && self.answer.as_ref().is_some_and(|Enclosing { ellipsoid: e, .. }| {
@@ -164,7 +164,7 @@ impl<const N: usize> MovingPoints<N> {
             })
     }
 
-    /// The old ellipsoid as frame and its points with their weights, unless these no longer span the space.
+    /// The old ellipsoid as frame and its points with their weights, unless they no longer span the space.
     fn warm_start(&self, answer: &Enclosing<N>) -> Option<Start<Const<N>>> {
         let (mut rows, lengths) = (answer.ellipsoid.axes(), answer.ellipsoid.semi_axes());
         rows.iter_mut().zip(lengths).for_each(|(row, a)| row.iter_mut().for_each(|x| *x /= a));
@@ -178,7 +178,7 @@ impl<const N: usize> MovingPoints<N> {
         let start = WorkingSet::new(working, Some(weights));
         let Iterate { frame, set, moments, .. } =
             Iterate::new(&PointSlice(&self.points), Const::<N>, frame, start, 0).ok()?;
-        // A scatter far from the identity is no start worth having.
+        // A scatter far from the identity is a poor start.
         let round = moments.factor.as_ref().iter().step_by(N + 1).all(|d| (1e-4..=1e4).contains(d));
         round.then_some(Start { frame, working: set.index, weights: Some(set.u), scans: 0 })
     }

@@ -20,11 +20,11 @@ use crate::numerics::dimension::{Const, Dimension, Dynamic};
 use crate::numerics::linalg::{cholesky, solve_lower, solve_lower_transpose};
 
 /// The proximal term relative to the largest diagonal of H: far above the rounding of its Cholesky factor, far below
-/// what ω could tell.
+/// the resolution of ω.
 const PROXIMAL: f64 = 1e-13;
 
-/// What [`thin_out`] takes to be left of the excess of κ when it forgets members: a step of Newton's method mostly
-/// leaves less. Should one that was needed go, a look at all points brings it back.
+/// The part of the excess of κ that [`thin_out`] assumes to be left when it drops members: a step of Newton's method
+/// mostly leaves less. If a needed member is dropped, a pass over all points brings it back.
 const EAGER: f64 = 0.1;
 
 /// Steps of [`thin_out`].
@@ -35,11 +35,11 @@ pub(crate) struct Workspace<D: Dimension> {
     h: Vec<f64>,
     r: Vec<f64>,
     v: Vec<f64>,
-    /// The members with v > 0, and the optimum over them.
+    /// The members with v > 0.
     free: Vec<usize>,
     factor: Vec<f64>,
     solution: Vec<f64>,
-    /// Weights a part of the way from u to v, and what follows from them.
+    /// Weights a part of the way from u to v, and their moments.
     trial: Vec<f64>,
     trial_moments: Moments<D>,
     /// The iterate of least gap.
@@ -54,7 +54,7 @@ impl<D: Dimension> Workspace<D> {
     }
 }
 
-/// Improves the weights until the gap over the working set is at most `gap`, or rounding stops the ascent. Answers the
+/// Improves the weights until the gap over the working set is at most `gap`, or rounding stops the ascent. Returns the
 /// number of steps.
 pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, work: &mut Workspace<D>, gap: f64, max_steps: usize) -> usize {
     let Iterate { rank, set, moments, .. } = at;
@@ -70,19 +70,19 @@ pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, work: &mut Workspace<D>, 
             return steps;
         }
         if now < best_gap {
-            // Quadratic convergence at least halves the gap; slower than that is rounding or a hard start.
+            // Quadratic convergence at least halves the gap; a slower decrease is rounding or a hard start.
             without_progress = if now < 0.5 * best_gap { 0 } else { without_progress + 1 };
             best_gap = now;
             work.best.copy_from(set);
         } else {
             without_progress += 1;
             if steps == 0 {
-                // A gap that is no number: there is nothing better to come back to.
+                // If the gap is NaN, there is no better iterate to return to.
                 work.best.copy_from(set);
             }
         }
-        // None of these has weight at the optimum of this set (Harman and Pronzato). Where rounding says that they
-        // have, it is not to be trusted.
+        // These have no weight at the optimum of this set (Harman and Pronzato). If rounding gives them one, it is not
+        // to be trusted.
         let threshold = elimination_threshold(rank.get(), moments.furthest().1);
         if !forget(rank, set, moments, threshold)
             || steps >= max_steps
@@ -100,8 +100,8 @@ pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, work: &mut Workspace<D>, 
     steps
 }
 
-/// Where every member has weight, as at the start, most will lose it, and Newton's model takes them out one by one. A
-/// few multiplicative steps u ← u·ω/n, which always ascend, tell them from the others, and they are forgotten together.
+/// If every member has weight, as at the start, most will lose it, and Newton's model removes them one by one. A few
+/// multiplicative steps u ← u·ω/n, which always ascend, separate them from the others, and they are dropped together.
 fn thin_out<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>, before: &mut WorkingSet) {
     let r = rank.get() as f64;
     for _ in 0..MULTIPLICATIVE_STEPS {
@@ -117,7 +117,7 @@ fn thin_out<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D
             forget(rank, set, moments, elimination_threshold(rank.get(), expected))
         };
         if !sound {
-            // The members left do not span the space.
+            // The remaining members do not span the space.
             std::mem::swap(set, before);
             moments.compute(&set.y, &set.u);
             break;
@@ -125,7 +125,7 @@ fn thin_out<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D
     }
 }
 
-/// The model of a point far outside with little weight is poor: Newton would only double its weight each step. The
+/// The model of a point far outside with little weight is poor: Newton would only double its weight in each step. The
 /// exact line search of the first-order method (Todd and Yıldırım), β = (ω − n)/(n(ω − 1)), brings such points in.
 fn lift_far_points<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>, before: &mut Vec<f64>) {
     let n = rank.get() as f64 + 1.0;
@@ -140,7 +140,7 @@ fn lift_far_points<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Mo
         set.u.iter_mut().for_each(|u| *u *= 1.0 - beta);
         set.u[j] += beta;
         if !moments.compute(&set.y, &set.u) {
-            // So far out that beside it the others seem to be one point.
+            // It is so far out that, relative to it, the others are one point.
             std::mem::swap(&mut set.u, before);
             moments.compute(&set.y, &set.u);
             break;
@@ -148,14 +148,14 @@ fn lift_far_points<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Mo
     }
 }
 
-/// One damped Newton step; false where no ascent is left.
+/// One damped Newton step; false if no ascent is left.
 fn step<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>, work: &mut Workspace<D>) -> bool {
     let r = rank.get();
     let n = r as f64 + 1.0;
     quadratic_model(rank, set, moments, work);
     non_negative_quadratic(n, &set.u, work);
 
-    // N + 1 points are a simplex: equal weights, whatever their places.
+    // N + 1 points are a simplex: equal weights, wherever they are.
     if work.v.iter().filter(|v| **v > 0.0).count() == r + 1 {
         work.v.iter_mut().filter(|v| **v > 0.0).for_each(|v| *v = 1.0 / n);
     }
@@ -166,8 +166,8 @@ fn step<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>, w
     let slope = moments.q.iter().zip(&work.v).map(|(q, v)| (q + 1.0) * v).sum::<f64>() - n * sum;
     let guaranteed = 1.0 / (1.0 + (n * (1.0 - sum)).max(0.0).sqrt());
     let mut t = 1.0;
-    // φ after normalising Σu = 1 is ln det S − n, so ln det S is the merit. Where the ascent is beyond what it resolves
-    // the full step is right anyway.
+    // φ after normalising Σu = 1 is ln det S − n, so ln det S is the merit. If the ascent is below the resolution of ln
+    // det S, the full step is right anyway.
     for _ in 0..60 {
         work.trial.clear();
         let (u, v) = (&set.u, &work.v);
@@ -211,7 +211,7 @@ fn quadratic_model<D: Dimension>(rank: D, set: &WorkingSet, moments: &Moments<D>
     work.r.extend(moments.q.iter().zip(&set.u).map(|(q, u)| 2.0 * (q + 1.0) - n + proximal * u));
 }
 
-/// Forgets the members with |z|² below `threshold`; false where the others do not span the space.
+/// Drops the members with |z|² below `threshold`; false if the others do not span the space.
 fn forget<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>, threshold: f64) -> bool {
     let q = &moments.q;
     if !q.iter().any(|q| *q < threshold) {
@@ -234,8 +234,8 @@ fn forget<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>,
 
 /// Maximises rᵀv − ½vᵀHv over v ≥ 0 by the active-set method of Lawson and Hanson, from v = u.
 ///
-/// Leaves the result in `work.v`. Every pass either moves to a better v with fewer free members or to the optimum of
-/// the free ones, so it ends; should rounding make it cycle it stops with a v at least as good as u.
+/// The result is in `work.v`. Every pass moves either to a better v with fewer free members or to the optimum of the
+/// free ones, so it ends; if rounding makes it cycle, it stops with a v at least as good as u.
 fn non_negative_quadratic<D: Dimension>(n: f64, u: &[f64], work: &mut Workspace<D>) {
     let k = u.len();
     let Workspace { h, r, v, free, factor, solution, .. } = work;
@@ -248,7 +248,7 @@ fn non_negative_quadratic<D: Dimension>(n: f64, u: &[f64], work: &mut Workspace<
         if !solve_free(k, h, r, free, factor, solution) {
             return;
         }
-        // As far as v ≥ 0 allows towards the optimum of the free members.
+        // Towards the optimum of the free members, as far as v ≥ 0 allows.
         let mut alpha = 1.0;
         let mut blocking = None;
         for (&i, &s) in free.iter().zip(&*solution) {
@@ -267,14 +267,14 @@ fn non_negative_quadratic<D: Dimension>(n: f64, u: &[f64], work: &mut Workspace<
             free.retain(|&i| v[i] > 0.0);
             continue;
         }
-        // Optimal over the free: bring in the member whose multiplier is furthest from optimal.
+        // Optimal over the free members: add the member whose multiplier is farthest from optimal.
         let mut enter = None;
         let mut largest = 1e-13 * n;
         for j in 0..k {
             if v[j] == 0.0 && !free.contains(&j) {
                 let hv: f64 = free.iter().map(|&i| h[j * k + i] * v[i]).sum();
                 let multiplier = r[j] - hv;
-                // A multiplier among the rounding of the terms it is the difference of says nothing.
+                // A multiplier within the rounding of the difference that gives it says nothing.
                 if multiplier > largest.max(1e-14 * (r[j].abs() + hv.abs())) {
                     (largest, enter) = (multiplier, Some(j));
                 }
@@ -287,7 +287,7 @@ fn non_negative_quadratic<D: Dimension>(n: f64, u: &[f64], work: &mut Workspace<
     }
 }
 
-/// Solves H·s = r over the free members by Cholesky; false where their H is not numerically positive definite.
+/// Solves H·s = r over the free members by Cholesky; false if their H is not numerically positive definite.
 fn solve_free(k: usize, h: &[f64], r: &[f64], free: &[usize], factor: &mut Vec<f64>, solution: &mut Vec<f64>) -> bool {
     let f = free.len();
     factor.clear();

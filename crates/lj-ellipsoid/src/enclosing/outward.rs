@@ -1,5 +1,5 @@
-//! Outward rounding: how far the points reach in an ellipsoid, and the growth that is proved to hold every one, and
-//! does as evaluated in `f64`.
+//! Outward rounding: the largest radius of the points in an ellipsoid, and the growth that is proved to contain every
+//! point, and does as evaluated in `f64`.
 
 use std::ops::Range;
 
@@ -12,36 +12,36 @@ use crate::points::Points;
 use crate::points::parallel::in_parts;
 use crate::shape::Shape;
 
-/// How far the points reach in an ellipsoid, with the rounding of the evaluation added.
+/// The largest radius of the points in an ellipsoid, with the rounding of the evaluation added.
 pub(crate) struct Reach<N: Dimension> {
-    /// Where the ellipsoid is the unit ball.
+    /// The frame in which the ellipsoid is the unit ball.
     pub(crate) frame: Frame<N>,
     /// At least max |diag(1/a)·R·(x − c)|, in whatever order it is evaluated.
     pub(crate) axes: f64,
-    /// At least max |diag(1/a)·R·(x − c)| of the doubles as they are.
+    /// At least the exact max |diag(1/a)·R·(x − c)| of the doubles.
     proved: f64,
     /// max (x − c)ᵀX(x − c).
     pub(crate) matrix: f64,
-    /// The points that may be contacts, with |diag(1/a)·R·(x − c)|²; `None` where they are a large part of all.
+    /// The points that may be contacts, with |diag(1/a)·R·(x − c)|²; `None` if they are a large part of all.
     pub(crate) candidates: Option<Vec<(usize, f64)>>,
-    /// The points that may be the furthest, unless they are many.
+    /// The points that may be the farthest, unless they are many.
     leaders: Option<Vec<usize>>,
     /// Passes over the points.
     pub(crate) passes: usize,
 }
 
-/// What a pass found in a part of the points.
+/// The result of a pass over a part of the points.
 struct Found {
     /// max |diag(1/a)·R·(x − c)|².
     furthest: f64,
-    /// The points near the furthest, unless they are too many.
+    /// The points near the farthest, unless they are too many.
     list: Option<Vec<(usize, f64)>>,
-    /// No part had too many.
+    /// Whether no part had too many.
     complete: bool,
 }
 
 impl Found {
-    /// What both parts found, at most `room` points within `near` of the furthest.
+    /// The results of both parts together, at most `room` points within `near` of the farthest.
     fn merge(self, part: Self, near: f64, room: usize) -> Self {
         let furthest = self.furthest.max(part.furthest);
         let list = self.list.zip(part.list).and_then(|(mut all, part)| {
@@ -53,17 +53,16 @@ impl Found {
     }
 }
 
-/// Points whose rounding is bounded one by one.
+/// The most points whose rounding is bounded one by one.
 const MANY: usize = 256;
 
-/// Errors of a radius up to this are rounding of no account.
+/// Errors of a radius up to this are negligible rounding.
 const SMALL: f64 = 1e-14;
 
-/// Candidates that are mostly enough.
+/// The number of candidates that mostly suffices.
 pub(crate) const SOME: usize = 16;
 
-/// The rounding of the two evaluations of an ellipsoid that is the unit ball of a frame, whatever the order of their
-/// sums.
+/// The rounding of both evaluations of an ellipsoid that is the unit ball of a frame, whatever the order of their sums.
 struct Evaluation<'a, N: Dimension> {
     frame: &'a Frame<N>,
     matrix: &'a [f64],
@@ -71,8 +70,8 @@ struct Evaluation<'a, N: Dimension> {
 }
 
 impl<N: Dimension> Evaluation<'_, N> {
-    /// |T·e|, and a bound on the rounding of its evaluation: of a component n + 2 roundings (T and e are themselves
-    /// rounded), and of the length as many again.
+    /// |T·e|, and a bound on the rounding of its evaluation: n + 2 roundings for a component (T and e are themselves
+    /// rounded), and as many again for the length.
     fn radius(&self, e: &[f64]) -> (f64, f64) {
         let gamma = (2 * self.n + 5) as f64 * UNIT_ROUNDOFF;
         let (mut square, mut error) = (0.0, 0.0);
@@ -106,8 +105,8 @@ impl<N: Dimension> Evaluation<'_, N> {
 
 /// One pass over the points, or two.
 ///
-/// The rounding of an evaluation, whatever the order of its sums, is bounded for each point that could be the furthest.
-/// Where these are many (points on a sphere) the bound that holds for all serves instead.
+/// The rounding of an evaluation, whatever the order of its sums, is bounded for each point that could be the farthest.
+/// If there are many of them (points on a sphere), the bound for all points is taken instead.
 pub(crate) fn reach<P: Points>(points: &P, rank: P::Dim, shape: &Shape<P::Dim>, tolerance: f64) -> Reach<P::Dim> {
     let dim = points.dim();
     let (n, r) = (dim.get(), rank.get());
@@ -140,8 +139,7 @@ pub(crate) fn reach<P: Points>(points: &P, rank: P::Dim, shape: &Shape<P::Dim>, 
         (axes, matrix, proved) = (0.0, 0.0, 0.0);
         for &i in leaders {
             points.read(i, v.as_mut());
-            // Where terms of the sums do not cancel, a bound on their rounding is as good as sums in twice the
-            // precision.
+            // If terms of the sums do not cancel, a bound on their rounding is as good as sums in twice the precision.
             let (center, axes_of, semi_axes) = (frame.origin.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
             if error > SMALL {
                 proved = proved.max(radius_at_most(center, axes_of, semi_axes, v.as_ref()));
@@ -162,17 +160,17 @@ pub(crate) fn reach<P: Points>(points: &P, rank: P::Dim, shape: &Shape<P::Dim>, 
 }
 
 /// max |T·(v − o)|² over the points, those within the share `near` of it unless they are a large part of all, and the
-/// passes it took.
+/// number of passes.
 fn furthest<P: Points>(
     points: &P,
     rank: P::Dim,
     frame: &Frame<P::Dim>,
     near: f64,
 ) -> (f64, Option<Vec<(usize, f64)>>, usize) {
-    // Candidates take as much room as the points themselves where all are on the surface: then rather look once more.
+    // If all points are on the surface, the candidates fill as much memory: another pass is better.
     let room = MANY.max(points.len() / 8);
     let mut furthest: f64 = 0.0;
-    // While the furthest is not known too many may seem near it; the second look knows it.
+    // While the farthest is unknown, too many may seem near it; the second pass knows it.
     let mut passes = 0;
     loop {
         passes += 1;
@@ -202,14 +200,14 @@ fn furthest<P: Points>(
     }
 }
 
-/// Scales the semi-axes so that the furthest point touches, and answers by how much: the least that is proved to hold
-/// every point, and holds it as evaluated by [`radius_at`].
+/// Scales the semi-axes so that the farthest point touches, and returns the factor: the least that is proved to contain
+/// every point, and contains it as evaluated by [`radius_at`].
 ///
-/// In a thin ellipsoid that evaluation may be larger than the truth: then once more. Where points are many, or rounding
-/// does not settle, the scaling is what holds them in any order of evaluation.
+/// In a thin ellipsoid that evaluation may exceed the exact value: then it is scaled again. If points are many, or
+/// rounding does not settle, the scaling contains them in any order of evaluation.
 pub(crate) fn touch<P: Points>(points: &P, shape: &mut Shape<P::Dim>, reach: &Reach<P::Dim>) -> f64 {
     let mut v = points.dim().zero();
-    // The products with the scale are rounded, by it or by the semi-axes.
+    // The products with the scale are rounded, in it or in the semi-axes.
     let mut growth = 1.0;
     let mut scale = reach.proved * (1.0 + 4.0 * UNIT_ROUNDOFF);
     for _ in 0..8 {

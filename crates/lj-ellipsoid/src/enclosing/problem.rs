@@ -18,8 +18,8 @@ pub struct EnclosingIterate<'a> {
     pub weights: &'a [f64],
 }
 
-/// Who sees the iterates. The solvers are compiled once for all observers: a call costs little beside the step it
-/// reports.
+/// The receiver of the iterates. The solvers are compiled once for all observers: a call costs little compared with the
+/// step that it reports.
 pub(crate) type Observer<'a> = dyn FnMut(EnclosingIterate<'_>) + 'a;
 
 /// The input of every method.

@@ -7,7 +7,7 @@ use crate::numerics::dimension::{Dimension, LANES};
 use crate::points::Points;
 
 /// Calls `visit(i, q)` for the points in `range` with qᵢ = |T·(vᵢ − o)|² at least the cutoff that the last visit
-/// answered (at first `cutoff`). Points below cost arithmetic only.
+/// returned (at first `cutoff`). Points below cost arithmetic only.
 #[inline(always)]
 pub(crate) fn beyond<P: Points>(
     points: &P,
@@ -24,7 +24,7 @@ pub(crate) fn beyond<P: Points>(
     let mut block = dim.zero_block();
     let mut at = range.start;
     while at < range.end {
-        // The last block repeats the last point: a maximum does not mind, and no visit is beyond the range.
+        // The last block repeats the last point: a maximum is unaffected, and no visit is beyond the range.
         let block = &mut block.as_mut()[..n];
         points.read_block(at, range.end, v.as_mut(), block);
         for k in 0..n {

@@ -25,7 +25,7 @@ pub(crate) struct Solution<N: Dimension> {
 }
 
 impl Solution<Dynamic> {
-    /// The same where the dimension is that of `dim`.
+    /// The same solution in the dimension of `dim`.
     pub(crate) fn in_dimension<N: Dimension>(self, dim: N) -> Solution<N> {
         let Self { shape, log_det_gap, weights, contacts, status, iterations, scans } = self;
         Solution { shape: shape.in_dimension(dim), log_det_gap, weights, contacts, status, iterations, scans }
@@ -47,7 +47,7 @@ impl<N: Dimension> Solution<N> {
     }
 }
 
-/// The upper bound on ln det X* that a method proves, in the coordinates of its frame, and what proves it.
+/// The upper bound on ln det X* that a method proves, in the coordinates of its frame, and its proof.
 pub(crate) struct Certificate {
     /// Every ellipsoid that contains the points has ln det X ≤ this, X in the frame.
     pub(crate) log_det_bound: f64,
@@ -55,7 +55,7 @@ pub(crate) struct Certificate {
 }
 
 impl Certificate {
-    /// From weights: ln det X ≤ −ln det S − r·ln r, loosened by what the rounding of the coordinates can do to ln det
+    /// From weights: ln det X ≤ −ln det S − r·ln r, increased by the effect of the coordinates' rounding on ln det
     /// S: 2·tr(S⁻¹Σuᵢyᵢδyᵢᵀ) ≤ 2√r·max|L⁻¹δyᵢ|.
     pub(crate) fn from_weights<P: Points>(
         points: &P,
@@ -82,7 +82,7 @@ impl Certificate {
     }
 }
 
-/// What a method ends with, beside its frame.
+/// The result of a method, beside its frame.
 pub(crate) struct Ending {
     pub(crate) certificate: Certificate,
     pub(crate) status: Status,
@@ -114,11 +114,11 @@ pub(crate) fn finish<P: Points>(
     if !shape.log_det.is_finite() || semi_axes.iter().any(|a| !a.is_finite()) {
         return Err(EnclosingError::OutOfRange);
     }
-    // ln det X* − ln det X: the transformation into the frame cancels, and with it its size.
+    // ln det X* − ln det X: the transformation into the frame cancels, and so does its size.
     let [_, logarithms] = logarithms(semi_axes, power_of_two_inverse(semi_axes.first().copied().unwrap_or(1.0)));
     let log_det_gap = certificate.log_det_bound + 2.0 * r as f64 * libm::log(growth) + 4.0 * UNIT_ROUNDOFF * logarithms;
-    // The points are proved to be inside, and the bound is one on all ellipsoids that hold them: a difference below
-    // zero, or none, would prove only that numbers left the range in which the errors are bounded.
+    // The points are proved to be inside, and the bound holds for all ellipsoids that contain them. A negative
+    // difference, or NaN, would only prove that numbers left the range in which the errors are bounded.
     let log_det_gap = if log_det_gap >= 0.0 { log_det_gap } else { f64::INFINITY };
     let status = match ended {
         Status::IterationLimit if log_det_gap > epsilon => Status::IterationLimit,

@@ -22,7 +22,7 @@ const ROUNDING_FLOOR: f64 = 32.0;
 /// Sets of at most this many points are their own start.
 const SMALL_SET: usize = 16;
 
-/// Where every method begins.
+/// The start of every method.
 pub(crate) struct Start<N: Dimension> {
     /// Coordinates in which the affine hull of the points has unit size along every axis.
     pub(crate) frame: Frame<N>,
@@ -35,14 +35,14 @@ pub(crate) struct Start<N: Dimension> {
 }
 
 impl<N: Dimension> Start<N> {
-    /// The same where the dimension is known at run time only.
+    /// The same with a dimension known only at run time.
     pub(crate) fn at_run_time(self) -> Start<Dynamic> {
         let Self { frame, working, weights, scans } = self;
         Start { frame: frame.at_run_time(), working, weights, scans }
     }
 }
 
-/// The bounding box of the points: extreme coordinates and who attains them.
+/// The bounding box of the points: extreme coordinates and the points that attain them.
 struct Bounds<N: Dimension> {
     low: N::Point,
     high: N::Point,
@@ -105,7 +105,7 @@ fn bounds_of<P: Points>(points: &P, range: Range<usize>) -> Result<Bounds<P::Dim
     let mut at = range.start;
     while at < range.end {
         points.read_block(at, range.end, v.as_mut(), &mut block.as_mut()[..n]);
-        // Few blocks hold a new extreme, and a look at the lanes together tells which. x·0 is 0 unless x is NaN or
+        // Few blocks contain a new extreme, and testing the lanes together finds them. x·0 is 0 unless x is NaN or
         // infinite.
         let (low, high) = (b.low.as_ref(), b.high.as_ref());
         let mut extreme = false;
@@ -132,11 +132,11 @@ fn bounds_of<P: Points>(points: &P, range: Range<usize>) -> Result<Bounds<P::Dim
 
 /// Finds the rank of the points, a frame, and a starting working set.
 ///
-/// Pass 1 takes the bounding box. Coordinates are scaled by powers of two so that its sides are near one: axes of
-/// wildly different units are then alike. If the extreme points along the axes span the space well, they are the start.
-/// Otherwise each further pass takes the extreme points along a direction d orthogonal to the differences b found so
-/// far and to the normals found so far: their difference is a new b, or, where the spread is no more than rounding (or
-/// the tolerance asked for), d is a normal of the affine hull.
+/// Pass 1 takes the bounding box. Coordinates are scaled by powers of two so that its sides are near one: axes of very
+/// different units are then alike. If the extreme points along the axes span the space well, they are the start.
+/// Otherwise each further pass takes the extreme points along a direction d orthogonal to the differences b and the
+/// normals found so far. Their difference is a new b, or, if the spread is no more than rounding (or the given
+/// tolerance), d is a normal of the affine hull.
 pub(crate) fn start<P: Points>(points: &P, flat_tolerance: f64) -> Result<Start<P::Dim>, EnclosingError> {
     let dim = points.dim();
     let n = dim.get();
@@ -168,7 +168,7 @@ pub(crate) fn start<P: Points>(points: &P, flat_tolerance: f64) -> Result<Start<
         };
         basis = Basis::new(dim);
         let mut normals = Basis::new(dim);
-        // What is orthogonal to one difference less than there are points is a normal.
+        // If the differences are one fewer than the points, every direction orthogonal to them is a normal.
         while basis.rank + normals.rank < n && basis.rank + 1 < points.len() {
             let d = furthest_axis(dim, &basis, &normals);
             scans += 1;
@@ -196,11 +196,11 @@ pub(crate) fn start<P: Points>(points: &P, flat_tolerance: f64) -> Result<Start<
     if frame.is_finite() { Ok(Start { frame, working, weights: None, scans }) } else { Err(EnclosingError::OutOfRange) }
 }
 
-/// Whether [`start`] finds the full rank of whatever points have weights that prove this ellipsoid nearly optimal.
+/// Whether [`start`] finds the full rank of any points with weights that prove this ellipsoid nearly optimal.
 ///
-/// With weights of scatter S the points spread along any d by 2√(dᵀSd) at least, and the ellipsoid reaches √(κ·dᵀSd), κ
-/// ≈ N. The spread below which d is a normal is a sum Σ|dₖ|Wₖ ≤ |diag(a)·R·d|·ΣWₖ|diag(1/a)·R·eₖ|. So
-/// ΣWₖ|diag(1/a)·R·eₖ| < 2/√κ is enough; half of 2/N is asked for.
+/// With weights of scatter S the points spread along any d by 2√(dᵀSd) at least, and the ellipsoid's half-extent is
+/// √(κ·dᵀSd), κ ≈ N. The spread below which d is a normal is a sum Σ|dₖ|Wₖ ≤ |diag(a)·R·d|·ΣWₖ|diag(1/a)·R·eₖ|. So
+/// ΣWₖ|diag(1/a)·R·eₖ| < 2/√κ is enough; half of 2/N is required.
 pub(crate) fn surely_spans<N: Dimension>(shape: &Shape<N>, flat_tolerance: f64) -> bool {
     let (center, axes, semi_axes) = (shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
     let n = center.len();
@@ -237,7 +237,7 @@ impl<N: Dimension> Units<N> {
         b
     }
 
-    /// The frame whose rows are the basis over its spreads.
+    /// The frame whose rows are those of the basis divided by its spreads.
     fn frame(self, dim: N, basis: &Basis<N>) -> Frame<N> {
         let scale = self.scale.as_ref();
         let rows = basis.rows().flat_map(|(b, spread)| b.iter().zip(scale).map(move |(x, s)| x * s / spread));
@@ -282,7 +282,7 @@ impl<N: Dimension> Basis<N> {
         }
     }
 
-    /// Gram–Schmidt with pivoting over `vectors`, at most as many as there are dimensions: stops where no residual
+    /// Gram–Schmidt with pivoting over `vectors`, at most as many as there are dimensions: stops when no residual
     /// exceeds `threshold`.
     fn extend_well_spread(&mut self, vectors: &mut dyn Iterator<Item = N::Point>, threshold: f64) {
         let n = self.dim.get();
@@ -298,7 +298,7 @@ impl<N: Dimension> Basis<N> {
         while self.rank < count {
             let mut longest = (0, 0.0);
             for (i, z) in left.chunks_exact_mut(n).enumerate() {
-                // Of the others it is free already.
+                // It is already orthogonal to the others.
                 if let Some((b, _)) = self.rows().last() {
                     let along = dot(b, z);
                     z.iter_mut().zip(b).for_each(|(x, y)| *x -= along * y);
@@ -323,7 +323,7 @@ impl<N: Dimension> Basis<N> {
 
 /// The unit vector orthogonal to both bases that is nearest to a coordinate axis.
 fn furthest_axis<N: Dimension>(dim: N, basis: &Basis<N>, normals: &Basis<N>) -> N::Point {
-    // What is left of axis k is 1 − Σbₖ² long, squared, over the vectors b of both.
+    // The rest of axis k has the squared length 1 − Σbₖ², over the vectors b of both.
     let mut within = dim.zero();
     for (b, _) in basis.rows().chain(normals.rows()) {
         within.as_mut().iter_mut().zip(b).for_each(|(sum, x)| *sum += x * x);
@@ -332,7 +332,7 @@ fn furthest_axis<N: Dimension>(dim: N, basis: &Basis<N>, normals: &Basis<N>) -> 
     let axis = (1..dim.get()).fold(0, |least, k| if within[k] < within[least] { k } else { least });
     let mut d = dim.zero();
     d.as_mut()[axis] = 1.0;
-    // Twice, since normalising a short residual magnifies what was left of the bases.
+    // Twice, because normalising a short residual magnifies the rest along the bases.
     for _ in 0..2 {
         basis.project_out(d.as_mut());
         normals.project_out(d.as_mut());
@@ -373,8 +373,7 @@ fn hull_frame<P: Points>(points: &P, basis: &Basis<P::Dim>, unit: Units<P::Dim>,
     let scale = unit.scale.as_ref();
     let directions = |(b, spread): (&[f64], f64)| dim.point(b.iter().zip(scale).map(|(x, s)| x * spread / s));
     orthonormal.extend_well_spread(&mut basis.rows().map(directions), 0.0);
-    // The hull is through the points, while the centre of the bounding box need not lie in it exactly: start at a
-    // point.
+    // The hull contains the points, but not exactly the centre of the bounding box: start at a point.
     let mut origin = unit.center;
     if basis.rank == 0 {
         points.read(working[0], origin.as_mut());

@@ -1,4 +1,4 @@
-//! One look at all points from the frame of an iterate: how far they reach, who reaches furthest, who can be forgotten.
+//! One pass over all points from the frame of an iterate: the largest distance, the farthest points, and those to drop.
 
 use std::ops::Range;
 
@@ -12,14 +12,14 @@ use crate::points::{Copied, Points};
 /// Violators are sought per orthant of at most this many leading coordinates, so that those of one pass spread out.
 const ORTHANT_COORDINATES: usize = 5;
 
-/// Violations below this share of the worst one are mostly gone once that is repaired.
+/// Violations below this share of the worst one mostly vanish once that is repaired.
 const WORTH_ADDING: f64 = 0.1;
 
-/// Points asked to estimate how many survive: at most so many, and at most one in so many.
+/// Points tested to estimate how many survive: at most so many, and at most one in so many.
 const SAMPLE: usize = 512;
 const SAMPLED: usize = 8;
 
-/// What a pass found.
+/// The result of a pass.
 pub(crate) struct Violators {
     /// κ = max |y|².
     pub(crate) furthest: f64,
@@ -33,11 +33,10 @@ pub(crate) struct Survivors<D> {
     pub(crate) points: Copied<D>,
 }
 
-/// The |y|² below which no point can touch the optimal ellipsoid, where the weights leave max |y|² at `furthest`.
+/// The |y|² below which no point can touch the optimal ellipsoid, if the weights leave max |y|² at `furthest`.
 ///
 /// Harman and Pronzato: with ε = max ω − n ≥ 0 every point with ω < n(1 + ε/2 − ½√(ε(4 + ε − 4/n))) has no weight at
 /// the optimum. Here ω = 1 + |y|², n = r + 1 and ε = κ − r; a relative 1e-10 guards against rounding.
-///
 /// R. Harman, L. Pronzato, *Improvements on removing nonoptimal support points in D-optimum design algorithms*,
 /// Stat. Probab. Lett. 77 (2007).
 pub(crate) fn elimination_threshold(r: usize, furthest: f64) -> f64 {
@@ -47,7 +46,7 @@ pub(crate) fn elimination_threshold(r: usize, furthest: f64) -> f64 {
     omega * (1.0 - 1e-10) - 1.0
 }
 
-/// What a pass found in a part of the points.
+/// The result of a pass over a part of the points.
 struct Part {
     furthest: f64,
     /// The furthest point of each orthant, with |y|².
@@ -57,7 +56,7 @@ struct Part {
 }
 
 impl Part {
-    /// What both parts found.
+    /// The results of both parts together.
     fn merge(mut self, part: Self, capacity: usize) -> Self {
         self.furthest = self.furthest.max(part.furthest);
         for (champion, other) in self.champions.iter_mut().zip(part.champions) {
@@ -74,15 +73,15 @@ impl Part {
     }
 }
 
-/// What is worth a closer look: a violation worth adding, or at least the largest |y|².
+/// The least |y|² that matters: of a violation worth adding, or at least the largest |y|².
 fn worth(r: f64, furthest: f64) -> f64 {
     if furthest > r { r + WORTH_ADDING * (furthest - r) } else { furthest }
 }
 
-/// Looks at all points from `frame`, in which the weights have scatter I and mean 0 up to rounding.
+/// Tests all points from `frame`, in which the weights have scatter I and mean 0 up to rounding.
 ///
 /// If κ turns out at most `expected`, and no more than `capacity` points lie beyond the elimination threshold of
-/// `expected`, these survivors are answered too: the threshold falls as κ grows, so theirs is on the safe side.
+/// `expected`, these survivors are returned too: the threshold falls as κ grows, so theirs is on the safe side.
 pub(crate) fn look<P: Points>(
     points: &P,
     rank: P::Dim,
@@ -104,8 +103,8 @@ pub(crate) fn look<P: Points>(
     (Violators { furthest, found }, survivors)
 }
 
-/// Whether a sample suggests that at most `capacity` points lie beyond `threshold`: to collect survivors only to find
-/// them too many is dear.
+/// Whether a sample suggests that at most `capacity` points lie beyond `threshold`: collecting survivors only to find
+/// them too many is costly.
 fn few_beyond<P: Points>(points: &P, rank: P::Dim, frame: &Frame<P::Dim>, threshold: f64, capacity: usize) -> bool {
     let mut v = points.dim().zero();
     let mut y = rank.zero();

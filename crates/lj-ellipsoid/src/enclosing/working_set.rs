@@ -19,20 +19,20 @@ impl WorkingSet {
         self.index.len()
     }
 
-    /// The points `index` with these weights, or else with equal ones.
+    /// The points `index` with these weights, or with equal ones.
     pub(crate) fn new(index: Vec<usize>, weights: Option<Vec<f64>>) -> Self {
         let u = weights.unwrap_or_else(|| vec![1.0 / index.len() as f64; index.len()]);
         Self { u, y: Vec::new(), index }
     }
 
-    /// Becomes a copy of `other`, in the room it has.
+    /// Becomes a copy of `other`, in its own memory.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.index.clone_from(&other.index);
         self.u.clone_from(&other.u);
         self.y.clone_from(&other.y);
     }
 
-    /// Computes the coordinates in `frame` afresh from the points.
+    /// Recomputes the coordinates in `frame` from the points.
     pub(crate) fn locate<P: Points>(&mut self, points: &P, rank: P::Dim, frame: &Frame<P::Dim>) {
         let dim = points.dim();
         let r = rank.get();
