@@ -1,6 +1,6 @@
 //! The analytic centre of half-spaces: the z of least −Σ ln(sᵢ + τ − pᵢ·z).
 //!
-//! About it the body contains the unit ball of its Hessian, and lies in the ball m times as large.
+//! The body contains the unit ball of its Hessian about the centre, and lies in the ball m times as large.
 
 use crate::inscribed::coordinates::Rows;
 use crate::numerics::dimension::Dimension;
@@ -13,16 +13,16 @@ const MOST_STEPS: usize = 500;
 /// The largest ratio of the diagonal of the Hessian's factor at which its rounding leaves the coordinates round.
 const NEARLY_ROUND: f64 = 1e4;
 
-/// Near the centre.
+/// A point near the centre.
 pub(crate) struct Centered {
     pub(crate) z: Vec<f64>,
-    /// C = L⁻ᵀ with L·Lᵀ the Hessian: it maps the unit ball to where the body contains its image.
+    /// C = L⁻ᵀ with L·Lᵀ the Hessian: the body contains the image of the unit ball under it.
     pub(crate) round: Vec<f64>,
-    /// The coordinates were so round already that C is exact but for a little rounding.
+    /// Whether the coordinates were so round already that C is exact except for a little rounding.
     pub(crate) near: bool,
 }
 
-/// Follows Newton's method from `z`, inside the half-spaces relaxed by τ; `None` where it is not.
+/// Follows Newton's method from `z`, inside the half-spaces relaxed by τ; `None` if it is not.
 pub(crate) fn center<D: Dimension>(dim: D, rows: &Rows, mut z: Vec<f64>, relaxation: f64) -> Option<Centered> {
     let n = dim.get();
     let mut slacks = vec![0.0; rows.s.len()];
@@ -40,7 +40,7 @@ pub(crate) fn center<D: Dimension>(dim: D, rows: &Rows, mut z: Vec<f64>, relaxat
             break;
         }
         solve_lower_transpose(dim, l, step);
-        // A damped step stays inside but for rounding; it is halved against that.
+        // A damped step stays inside except for rounding, against which it is halved.
         let mut damping = 1.0 / (1.0 + decrement);
         let moved = loop {
             let moved: Vec<f64> = z.iter().zip(&*step).map(|(z, d)| z + damping * d).collect();
@@ -80,8 +80,8 @@ fn slacks_at<D: Dimension>(dim: D, rows: &Rows, relaxation: f64, z: &[f64], slac
     inside
 }
 
-/// Factors the Hessian H = Σpᵢpᵢᵀ/sᵢ² = L·Lᵀ and answers −L⁻¹g, g = Σpᵢ/sᵢ: its length is the decrement √(gᵀH⁻¹g), and
-/// the Newton step is L⁻ᵀ of it.
+/// Factors the Hessian H = Σpᵢpᵢᵀ/sᵢ² = L·Lᵀ and returns −L⁻¹g, g = Σpᵢ/sᵢ: its length is the decrement √(gᵀH⁻¹g), and
+/// the Newton step is L⁻ᵀ times it.
 fn newton<D: Dimension>(dim: D, rows: &Rows, slacks: &[f64], l: &mut [f64]) -> Option<D::Point> {
     let n = dim.get();
     l.fill(0.0);

@@ -4,31 +4,31 @@ use crate::inscribed::coordinates::Rows;
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
 
-/// What is known of the directions in which half-spaces are open.
+/// Whether half-spaces are open in some direction.
 pub(crate) enum Opening {
-    /// There is none.
+    /// They are open in none.
     None,
-    /// The caller knows one for certain.
+    /// The caller has proved one.
     Proved,
-    /// The rows come as near to one as rounding can tell: in some direction none of them grows by more than this share
-    /// of what the others fall.
+    /// The rows are as nearly open as rounding can resolve: in some direction none of them rises by more than this
+    /// share of the others' fall.
     Nearly { ratio: f64 },
 }
 
-/// The most Newton steps. Each may move the logarithm of a multiplier by one at least, so that their ratios may reach
-/// the range of `f64`.
+/// The most Newton steps. Each can change the logarithm of a multiplier by one or more, so that ratios can span the
+/// range of `f64`.
 const MOST_STEPS: usize = 1000;
 
-/// An ascent of a row this small beside the descents of others is worth an exact look.
+/// If the ascent of a row is this small against the descents of others, it is tested exactly.
 const LITTLE: f64 = 1e-9;
 
-/// Looks for a direction z with aᵢ·z ≤ 0 for all rows, which span the space and are of unit length.
+/// Searches for a direction z with aᵢ·z ≤ 0 for all rows, which span the space and are of unit length.
 ///
 /// The least of g(z) = Σexp(aᵢ·z) exists exactly if there is none: there yᵢ = exp(aᵢ·z) has Σyᵢaᵢ = 0, so that the rows
-/// span the space with positive combinations (Stiemke's lemma). A Newton step Δ gives multipliers yᵢ(1 + aᵢ·Δ) for
-/// which that holds, and proves it where none of them is negative, whatever the ratios of the yᵢ, which are those of
-/// the faces of a needle or plate, down to zero. Otherwise Δ turns to where the rows are open, and `is_open` decides
-/// about it by the half-spaces themselves.
+/// span the space with positive combinations (Stiemke's lemma). A Newton step Δ gives multipliers yᵢ(1 + aᵢ·Δ) with the
+/// same sum of zero. If none of them is negative, they prove it, whatever the ratios of the yᵢ, which are those of the
+/// faces of a needle or plate, down to zero. Otherwise Δ turns towards an open direction, which `is_open` tests with
+/// the half-spaces themselves.
 pub(crate) fn opening<D: Dimension>(dim: D, rows: &Rows, is_open: &dyn Fn(&[f64]) -> bool) -> Opening {
     let n = dim.get();
     let mut exponents = vec![0.0; rows.s.len()];
@@ -61,7 +61,7 @@ pub(crate) fn opening<D: Dimension>(dim: D, rows: &Rows, is_open: &dyn Fn(&[f64]
             return Opening::Proved;
         }
         ratio = highest.max(0.0) / largest;
-        // A whole step, or else one that changes no exponent by more than one: g always descends along it.
+        // A whole step, or one that changes no exponent by more than one: g always descends along it.
         let at =
             |length: f64| exponents.iter().zip(&changes).map(|(e, x)| libm::exp(e + length * x - most)).sum::<f64>();
         let (now, slope) = (y.iter().sum::<f64>(), dot(&y, &changes));

@@ -1,8 +1,8 @@
-//! What the multipliers of an iterate prove, with the rounding of the proof.
+//! The bound that the multipliers of an iterate prove, with the rounding of the proof.
 //!
-//! The multipliers y ≥ 0, the vectors vᵢ and the computed pᵢ are taken to be exactly the doubles that stand for them.
-//! The body is { z : Pᵢ·z ≤ 1 + βᵢ } with |Pᵢ − pᵢ| ≤ εᵢ|pᵢ|, and it lies in the ball of radius R about zero. With S =
-//! Σyᵢ·sym(pᵢvᵢᵀ) every (B', d') in it has
+//! The multipliers y ≥ 0, the vectors vᵢ and the computed pᵢ are taken to be exactly their doubles. The body is { z :
+//! Pᵢ·z ≤ 1 + βᵢ } with |Pᵢ − pᵢ| ≤ εᵢ|pᵢ|, and it lies in the ball of radius R about zero. With S = Σyᵢ·sym(pᵢvᵢᵀ)
+//! every (B', d') in it has
 //!
 //! > tr(B'S) = Σyᵢ vᵢᵀB'pᵢ ≤ max|vᵢ|·Σyᵢ|B'pᵢ| ≤ max|vᵢ|·(Σyᵢ(1 + βᵢ) + |Σyᵢpᵢ|R + Σyᵢεᵢ|pᵢ|R) = T,
 //!
@@ -22,13 +22,13 @@ use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{UNIT_ROUNDOFF, cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
 use crate::numerics::twofold::Sum;
 
-/// The largest share of one that errors may move the constraints with weight by, for the proof to be one.
+/// The largest share of one by which errors may move the constraints with weight if the proof is to hold.
 const SMALL: f64 = 0.01;
 
-/// ln det B' is at most this for every ellipsoid { d' + B'u : |u| ≤ 1 } in { z : Pᵢ·z ≤ 1 + βᵢ }; infinite where the
+/// An upper bound of ln det B' for every ellipsoid { d' + B'u : |u| ≤ 1 } in { z : Pᵢ·z ≤ 1 + βᵢ }; infinite if the
 /// multipliers prove nothing.
 ///
-/// `error` holds the εᵢ, and `beyond(i, yᵢ)` answers βᵢ ≥ 0.
+/// `error` contains the εᵢ, and `beyond(i, yᵢ)` returns βᵢ ≥ 0.
 pub(crate) fn log_det_at_most<D: Dimension>(
     dim: D,
     p: &[f64],
@@ -69,7 +69,7 @@ pub(crate) fn log_det_at_most<D: Dimension>(
     let radius = 1.1 * (1.0 + mean) * dot(&point.b, &point.b).sqrt() * norm_of_inverse(dim, gram);
     let residual = residual.iter().map(|r| r.total()).map(|r| r * r).sum::<f64>().sqrt();
     let unit = n as f64 * UNIT_ROUNDOFF;
-    // What rounding leaves of Σyᵢpᵢ = 0 is at least that of its own evaluation.
+    // The rounding of Σyᵢpᵢ = 0 is at least that of its own evaluation.
     let bent = (residual + moved + UNIT_ROUNDOFF * size) * radius;
     // Entries of S, and its factor, are rounded: ln det(S + E) ≥ ln det S − 1.1·|S⁻¹||E| for small errors E.
     let loosened = (unit + 8.0 * UNIT_ROUNDOFF) * size * norm_of_inverse(dim, s);

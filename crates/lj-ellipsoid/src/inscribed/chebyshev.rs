@@ -10,20 +10,20 @@ use crate::inscribed::coordinates::Rows;
 use crate::numerics::dimension::Dynamic;
 use crate::numerics::linalg::{cholesky, dot, power_of_two_inverse, solve_lower, solve_lower_transpose};
 
-/// Depths below this share of the largest offset are too little for the program to tell.
+/// Depths below this share of the largest offset are too small for the program to resolve.
 const THIN: f64 = 1e-6;
 
-/// The share that rounding and the error of the multipliers cannot reach.
+/// The share that rounding and the error of the multipliers cannot exceed.
 const NOTHING: f64 = 1e-7;
 
 /// An origin as deep as this share of the largest offset is a point well inside.
 const DEEP: f64 = 1e-3;
 
-/// What the program found.
+/// The result of the program.
 pub(crate) enum Depth {
     /// A point well inside: the origin if it is, else near the centre of a largest ball.
     Inside(Vec<f64>),
-    /// The intersection is thin, or empty by little. The point is inside the half-spaces relaxed by so much.
+    /// The intersection is thin, or empty by little. The point is inside the half-spaces relaxed by `relaxation`.
     Thin { at: Vec<f64>, relaxation: f64 },
     /// There is no common point.
     Empty,
@@ -39,10 +39,10 @@ struct ChebyshevIterate {
     c: Vec<f64>,
 }
 
-/// How deep the intersection is; rows of unit length.
+/// The depth of the intersection; rows of unit length.
 ///
-/// The systems are of numbers per length, and Cholesky takes their roots: the digits of the root of a length are
-/// others in another unit, and so all is measured in a power of two near the largest offset.
+/// The systems contain inverse lengths, and Cholesky takes their roots. The root of a length has other digits in
+/// another unit, and so everything is measured in a power of two near the largest offset.
 pub(crate) fn depth(rows: &Rows) -> Depth {
     let per_unit = power_of_two_inverse(rows.s.iter().fold(0.0, |s: f64, b| s.max(b.abs())));
     let back = |z: Vec<f64>| z.into_iter().map(|x| x / per_unit).collect();
@@ -107,7 +107,7 @@ impl ChebyshevIterate {
         dot(&residual, &residual).sqrt()
     }
 
-    /// One step that aims at the products cᵢyᵢ = `target`; false where the system is not numerically definite.
+    /// One step that aims at the products cᵢyᵢ = `target`; false if the system is not numerically definite.
     fn step(&mut self, rows: &Rows, target: f64) -> bool {
         let Self { w, y, c } = self;
         let k = w.len();

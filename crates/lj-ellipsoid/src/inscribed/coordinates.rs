@@ -1,13 +1,12 @@
 //! Coordinates in which a body is round, however thin it is.
 //!
-//! x = o + M·z, and the body { x : aᵢ·x ≤ bᵢ } is { z : pᵢ·z ≤ sᵢ } with pᵢ = Mᵀaᵢ and sᵢ = bᵢ − aᵢ·o. Of a body t
-//! thick and one wide, turned against the axes, the components of p and s are t in size and differences of products of
-//! size one. So o and M are taken to be *exactly* the doubles that stand for them, and p and s are computed in twice
-//! the precision: then the problem in z is that of the body as given, and its data are as good as doubles can be, at
-//! any thickness.
+//! x = o + M·z, and the body { x : aᵢ·x ≤ bᵢ } is { z : pᵢ·z ≤ sᵢ } with pᵢ = Mᵀaᵢ and sᵢ = bᵢ − aᵢ·o. For a body t
+//! thick and one wide, turned against the axes, the components of p and s are of size t and differences of products of
+//! size one. So o and M are taken to be *exactly* their doubles, and p and s are computed in twice the precision: then
+//! the problem in z is that of the given body, and its data are as good as doubles can be, at any thickness.
 //!
-//! M is kept as M = Rᵀ·diag(a), R orthonormal to rounding: as a product with a general matrix on the right it would
-//! lose its short columns in the long ones.
+//! M is kept as M = Rᵀ·diag(a), R orthonormal to rounding: a product with a general matrix on the right would lose its
+//! short columns in the long ones.
 
 use crate::inscribed::polyhedron::Polyhedron;
 use crate::numerics::dimension::Dimension;
@@ -16,10 +15,10 @@ use crate::numerics::linalg::{
 };
 use crate::numerics::twofold;
 
-/// Terms this many times as large as their sum cancel: then twice the precision is worth its price.
+/// If terms are this many times as large as their sum, they cancel: then twice the precision is worth its cost.
 const CANCELLING: f64 = 8.0;
 
-/// Rounds of single moves to a point of doubles that is inside.
+/// Rounds of single moves to a point inside with coordinates in doubles.
 const MOST_MOVES: usize = 16;
 
 /// The map x = o + Rᵀ·diag(a)·z.
@@ -29,7 +28,7 @@ pub(crate) struct Coordinates {
     pub(crate) origin: Vec<f64>,
     /// R, row by row: row k is the direction of the length aₖ.
     pub(crate) axes: Vec<f64>,
-    /// a, longest first once they were stretched.
+    /// a, longest first after a stretch.
     pub(crate) lengths: Vec<f64>,
 }
 
@@ -69,14 +68,14 @@ impl Coordinates {
         rows
     }
 
-    /// Writes pᵢ, and answers sᵢ with a bound on the relative errors of both.
+    /// Writes pᵢ, and returns sᵢ with a bound on the relative errors of both.
     #[inline(always)]
     fn row<D: Dimension>(&self, dim: D, columns: &[f64], a: &[f64], b: f64, p: &mut [f64]) -> (f64, f64) {
         let n = dim.get();
         let (columns, origin, a, p) = (&columns[..n * n], &self.origin[..n], &a[..n], &mut p[..n]);
         let plain = (n as f64 + 2.0) * UNIT_ROUNDOFF;
-        // The largest |pₖ|, and the largest Σᵢ|Mᵢₖaᵢ|: of |p| and of the error the one is the least and √n times the
-        // other the most.
+        // The largest |pₖ|, a lower bound of |p|, and the largest Σᵢ|Mᵢₖaᵢ|: √n times that is an upper bound of the
+        // error.
         let (mut largest, mut size): (f64, f64) = (0.0, 0.0);
         let (mut s, mut size_of_s) = (b, b.abs());
         for k in 0..n {
@@ -109,7 +108,7 @@ impl Coordinates {
         (s, error * (n as f64).sqrt() * (size / largest) + error_of_s * (size_of_s / s.abs()))
     }
 
-    /// No less than ln|det M|, nor than −ln|det M⁻¹| where M⁻¹ = diag(1/a)·R is meant, with the lengths a in a unit.
+    /// No less than ln|det M|, or than −ln|det M⁻¹| for M⁻¹ = diag(1/a)·R, with the lengths a in a unit.
     ///
     /// With R·Rᵀ = I + D, |D| ≤ δ the largest sum of a row, |det R| is within N·δ of one; so is that of R with entries
     /// rounded.
@@ -131,7 +130,7 @@ impl Coordinates {
         self.axes.chunks_exact(n).zip(&self.lengths).flat_map(|(axis, a)| axis.iter().map(move |x| a * x)).collect()
     }
 
-    /// o ← o + M·z, rounded once: an intermediate sum may be far larger than what is left of it across a thin body.
+    /// o ← o + M·z, rounded once: an intermediate sum may be far larger than the result across a thin body.
     pub(crate) fn shift(&mut self, z: &[f64]) {
         let n = z.len();
         let columns = self.columns();
@@ -155,8 +154,8 @@ impl Coordinates {
     }
 
     /// Moves the origin, from where it is or from `earlier`, by single spacings of its doubles to where the least slack
-    /// is the largest: a body may be so thin that it holds few points of doubles, and the one nearest to its centre
-    /// need not be one of them.
+    /// is largest. A body may be so thin that it contains few points of doubles, and the one nearest to its centre need
+    /// not be one of them.
     pub(crate) fn settle<D: Dimension>(&mut self, dim: D, polyhedron: &Polyhedron, earlier: &[f64]) {
         let least = |coordinates: &Self| {
             coordinates
@@ -199,16 +198,16 @@ impl Coordinates {
         }
     }
 
-    /// M ← M·C up to a rotation from the right: the unit ball of the new coordinates is the image of what C makes of
-    /// the unit ball of the old ones.
+    /// M ← M·C up to a rotation from the right: the unit ball of the new coordinates is the image under C of the unit
+    /// ball of the old ones.
     ///
-    /// diag(a)·C = U·Σ·Vᵀ. Of T = Cᵀ·diag(a), whose columns are graded, Householder's and Jacobi's methods find Σ and
+    /// diag(a)·C = U·Σ·Vᵀ. For T = Cᵀ·diag(a), whose columns are graded, Householder's and Jacobi's methods find Σ and
     /// Uᵀ to high relative accuracy, and M·C·V = (Rᵀ·U)·Σ.
     pub(crate) fn stretch<D: Dimension>(&mut self, dim: D, c: &[f64]) {
         let n = dim.get();
         let mut t = dim.matrix((0..n * n).map(|at| c[at % n * n + at / n] * self.lengths[at % n]));
         let t = &mut t.as_mut()[..n * n];
-        // A power of two keeps the squares in range and moves no bit.
+        // A power of two keeps the squares in range and changes no mantissa.
         let unit = power_of_two_inverse(t.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
         t.iter_mut().for_each(|x| *x *= unit);
         triangularize(dim, t);
@@ -236,9 +235,9 @@ impl Coordinates {
         self.axes.copy_from_slice(&axes.as_ref()[..n * n]);
     }
 
-    /// The ellipsoid of this centre, these axes and semi-axes as seen by y = diag(1/a)·R·(x − o): its centre, and E
-    /// with the ellipsoid being { d + Eᵀ·u : |u| ≤ 1 }, both with bounds on their errors beyond three roundings of each
-    /// number.
+    /// The ellipsoid of this centre, these axes and semi-axes in the coordinates y = diag(1/a)·R·(x − o): its centre,
+    /// and E such that the ellipsoid is { d + Eᵀ·u : |u| ≤ 1 }, both with bounds on their errors beyond three roundings
+    /// of each number.
     #[expect(clippy::type_complexity, reason = "two arrays of numbers with errors")]
     pub(crate) fn seen(&self, center: &[f64], axes: &[f64], semi_axes: &[f64]) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
         let n = center.len();

@@ -15,8 +15,8 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 pub(crate) struct Facets {
     pub(crate) normals: Vec<f64>,
     pub(crate) offsets: Vec<f64>,
-    /// The least n·x over the corners of what the facet stands for, to rounding. The edges or triangles of all facets
-    /// are a closed surface, so that whatever reaches from within below all of these planes stays within the hull.
+    /// The least n·x over the corners that the facet stands for, to rounding. The edges or triangles of all facets are
+    /// a closed surface, so that a set inside that is below all of these planes is within the hull.
     pub(crate) depths: Vec<f64>,
 }
 
@@ -67,7 +67,7 @@ struct Triangle {
     offset: f64,
     /// Twice the area.
     size: f64,
-    /// Points beyond this plane, to be added yet.
+    /// Points beyond this plane that are still to be added.
     outside: Vec<usize>,
     alive: bool,
 }
@@ -87,7 +87,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 struct Hull3<'a> {
     points: &'a [[f64; 3]],
     triangles: Vec<Triangle>,
-    /// Points this near to a plane are not beyond it.
+    /// The distance within which points count as not beyond a plane.
     tolerance: f64,
 }
 
@@ -120,7 +120,7 @@ impl Hull3<'_> {
         dot3(self.triangles[triangle].normal, self.points[i]) - self.triangles[triangle].offset
     }
 
-    /// Gives every point to the first of `triangles` it is beyond; the others are inside, up to the tolerance.
+    /// Assigns every point to the first of `triangles` that it is beyond; the others are inside, up to the tolerance.
     fn distribute(&mut self, points: impl Iterator<Item = usize>, triangles: &[usize]) {
         for i in points {
             for &t in triangles {
@@ -132,7 +132,7 @@ impl Hull3<'_> {
         }
     }
 
-    /// Replaces the triangles that `eye` sees by the cone from `eye` over their horizon; answers the new ones.
+    /// Replaces the triangles that `eye` sees by the cone from `eye` over their horizon; returns the new ones.
     fn add(&mut self, seed: usize, eye: usize, orphans: &mut Vec<usize>) -> Vec<usize> {
         let mut visible = vec![seed];
         self.triangles[seed].alive = false;
@@ -185,7 +185,7 @@ impl Hull3<'_> {
     }
 }
 
-/// Four points of a tetrahedron of good size, or `None` where the points are flat.
+/// Four points of a tetrahedron of good size, or `None` if the points are flat.
 fn tetrahedron(points: &[[f64; 3]]) -> Option<[usize; 4]> {
     let furthest = |measure: &dyn Fn([f64; 3]) -> f64| {
         (0..points.len()).map(|i| (i, measure(points[i]))).fold((0, -1.0), |m, now| if now.1 > m.1 { now } else { m })
@@ -207,8 +207,8 @@ fn tetrahedron(points: &[[f64; 3]]) -> Option<[usize; 4]> {
     if dot3(normal, subtract(points[d], points[a])) > 0.0 { Some([a, c, b, d]) } else { Some([a, b, c, d]) }
 }
 
-/// The faces of the hull of points in space, in coordinates where they are of unit size; points within `tolerance` of a
-/// plane are not beyond it. `None` where the points are flat.
+/// The faces of the hull of points in space, in coordinates in which they are of unit size; points within `tolerance`
+/// of a plane are not beyond it. `None` if the points are flat.
 pub(crate) fn hull3(points: &[[f64; 3]], tolerance: f64) -> Option<Facets> {
     let [a, b, c, d] = tetrahedron(points)?;
     let mut hull = Hull3 { points, triangles: Vec::new(), tolerance };

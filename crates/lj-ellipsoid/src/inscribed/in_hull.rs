@@ -1,7 +1,7 @@
 //! The maximum-volume ellipsoid inside the convex hull of points.
 //!
-//! The points are first mapped so that their enclosing ellipsoid is the unit ball: there the hull lies between the
-//! balls of radius 1/N and 1 (John), so that facets and slacks are of unit size whatever the condition of the points.
+//! The points are first mapped so that their enclosing ellipsoid is the unit ball: then the hull lies between the balls
+//! of radius 1/N and 1 (John), so that facets and slacks are of unit size whatever the condition of the points.
 
 use crate::enclosing;
 use crate::error::{EnclosingError, InscribedError};
@@ -84,17 +84,17 @@ pub(crate) fn solve_points<P: Points>(
     } else {
         hull3(images.as_chunks::<3>().0, tolerance).ok_or(InscribedError::Flat { rank: 2, dimension: 3 })?
     };
-    // The planes are what their doubles say; how far the hull reaches beyond them is added by weight.
+    // The planes are exactly their doubles; how far the hull extends beyond them is added by weight.
     let error = vec![0.0; offsets.len()];
     let rows = Rows { n, p: normals, s: offsets, error };
-    // Coordinates of images, and the products and sums along a unit normal, which are at most √n in size.
+    // The rounding of coordinates of images, and along a unit normal, where they are at most √n in size.
     let root = (n as f64).sqrt();
     let rounding = root * error_of_image + (n + 2) as f64 * UNIT_ROUNDOFF * root;
     let hull = Hull { coordinates: coordinates.clone(), rows: &rows, depths, images: &images, rounding, tolerance };
     solution::solve(dim, coordinates, &rows, &hull, options, observer)
 }
 
-/// What keeps points from having an enclosing ellipsoid keeps their hull from having an inscribed one.
+/// If points have no enclosing ellipsoid, their hull has no inscribed one, for the same reason.
 const fn around_points(why: EnclosingError) -> InscribedError {
     match why {
         EnclosingError::Empty => InscribedError::Empty,
@@ -111,8 +111,7 @@ const fn around_points(why: EnclosingError) -> InscribedError {
 
 /// y = diag(1/a)·R·(v − c) for all points, and a bound on the error of its coordinates.
 ///
-/// Where the terms of a coordinate cancel, as they do along the short axis of a thin body, they are summed in twice the
-/// precision.
+/// If the terms of a coordinate cancel, as along the short axis of a thin body, they are summed in twice the precision.
 fn images<P: Points>(points: &P, shape: &Shape<P::Dim>) -> (Vec<f64>, f64) {
     let n = points.dim().get();
     let center = &shape.center.as_ref()[..n];
@@ -138,35 +137,34 @@ fn images<P: Points>(points: &P, shape: &Shape<P::Dim>) -> (Vec<f64>, f64) {
     (images, (n + 3) as f64 * UNIT_ROUNDOFF * CANCELLING)
 }
 
-/// Terms larger than this, of an image of at most one, cancel.
+/// Terms larger than this, in a coordinate of an image of at most one, cancel.
 const CANCELLING: f64 = 4.0;
 
 /// The hull of points, in the coordinates of their images.
 struct Hull<'a> {
     coordinates: Coordinates,
     rows: &'a Rows,
-    /// How far out the corners of each facet are at least.
+    /// A lower bound of the distances of each facet's corners.
     depths: Vec<f64>,
     images: &'a [f64],
-    /// A bound on what rounding does to p·y of an image.
+    /// A bound on the rounding of p·y for an image.
     rounding: f64,
-    /// How near to the hull points were taken to be in it.
+    /// The distance from the hull within which points count as in it.
     tolerance: f64,
 }
 
-/// Multipliers below this do not pay for a look at all points: what they multiply is as little as the tolerance of the
-/// hull.
+/// Multipliers below this do not pay for a pass over all points: their terms are as small as the tolerance of the hull.
 const WEIGHTY: f64 = 1e-8;
 
 impl<D: Dimension> Body<D> for Hull<'_> {
-    /// The largest scale that is proved to keep the ellipsoid below the corners of every facet: the surface that these
-    /// bound is closed and made of points of the hull, so that the ellipsoid, the centre of which it surrounds, stays
-    /// in the hull.
+    /// The largest scale that is proved to keep the ellipsoid below the corners of every facet. The facets of these
+    /// corners are a closed surface of points of the hull around the centre of the ellipsoid, so that the ellipsoid
+    /// stays in the hull.
     fn touch(&self, shape: &mut Shape<D>) -> Option<()> {
         let n = self.rows.n;
         let (d, e) = self.coordinates.seen(shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
         let unit = (n + 8) as f64 * UNIT_ROUNDOFF;
-        // Σxᵢ of products with an unit vector, and a bound on what rounding does to it.
+        // Σxᵢ of products with a unit vector, and a bound on its rounding.
         let along = |p: &[f64], x: &[(f64, f64)]| {
             let terms = p.iter().zip(x).map(|(p, (x, error))| (p * x, p.abs() * (unit * x.abs() + error)));
             terms.fold((0.0, 0.0), |(sum, error), (x, e)| (sum + x, error + e))
@@ -183,7 +181,7 @@ impl<D: Dimension> Body<D> for Hull<'_> {
         (scale > 0.0 && scale.is_finite()).then_some(())
     }
 
-    /// By a look at all points.
+    /// By a pass over all points.
     fn beyond(&self, i: usize, weight: f64) -> f64 {
         let n = self.rows.n;
         let (p, s) = (&self.rows.p[i * n..(i + 1) * n], self.rows.s[i]);

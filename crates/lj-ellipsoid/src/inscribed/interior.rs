@@ -1,4 +1,4 @@
-//! The way from half-spaces to coordinates in which their intersection is round.
+//! From half-spaces to coordinates in which their intersection is round.
 
 use crate::error::InscribedError;
 use crate::inscribed::analytic_center::center;
@@ -10,26 +10,24 @@ use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{UNIT_ROUNDOFF, dot};
 use crate::numerics::twofold;
 
-/// How often coordinates are stretched before a body is called empty. Every time a thin one becomes a million times
+/// How often coordinates are stretched before a body counts as empty. Each time a thin one becomes a million times
 /// thicker in them, so that this covers the range of `f64`.
 const MOST_STRETCHES: usize = 120;
 
-/// How often the columns of the normals are made orthonormal: each time what rounding left of a column is computed
-/// afresh.
+/// How often the columns of the normals are made orthonormal: each time the remainder of a column is recomputed.
 const MOST_CONDITIONINGS: usize = 4;
 
-/// What rounding leaves of a column dependent on the others, relative to it.
+/// The rounding of a column that depends on the others, relative to it.
 const DEPENDENT: f64 = 32.0 * f64::EPSILON;
 
 /// Coordinates about the analytic centre of the intersection in which it contains the unit ball and lies in a ball of
 /// radius m, and the half-spaces in them.
 ///
-/// In coordinates in which the normals have Σaᵢaᵢᵀ = I (their condition is then gone) they are seen to span the space
-/// positively. A linear program then finds an interior point. Where it finds the body thin, that is, cannot tell its
-/// thickness from rounding, the coordinates are stretched to make *relaxed* half-spaces round, pᵢ·z ≤ sᵢ + τ with τ a
-/// little more than that thickness, and the program is solved again. Where that ends without a point inside, the origin
-/// is one if all slacks there, which are exact to a rounding, are positive.
-///
+/// In coordinates in which the normals have Σaᵢaᵢᵀ = I (their condition is then gone) they are proved to span the space
+/// positively. A linear program then finds an interior point. If it cannot tell the thickness of the body from
+/// rounding, the coordinates are stretched to make *relaxed* half-spaces round, pᵢ·z ≤ sᵢ + τ with τ a little more than
+/// that thickness, and the program is solved again. If that ends without a point inside, the origin is one if all
+/// slacks there, which are exact to a rounding, are positive.
 /// # Errors
 /// [`InscribedError::Unbounded`], [`InscribedError::NearlyUnbounded`], [`InscribedError::EmptyInterior`],
 /// [`InscribedError::NearlyEmpty`].
@@ -39,7 +37,7 @@ pub(crate) fn round_coordinates<D: Dimension>(
 ) -> Result<(Coordinates, Rows), InscribedError> {
     let n = polyhedron.n;
     let (mut coordinates, mut rows) = conditioned(dim, polyhedron)?;
-    // The first coordinates know nothing of the size of the body.
+    // The first coordinates are independent of the size of the body.
     let mut reach = f64::INFINITY;
     let mut shortest = f64::INFINITY;
     let mut stuck = false;
@@ -97,18 +95,17 @@ fn is_interior(rows: &Rows) -> bool {
 
 /// Coordinates in which the columns of the normals are nearly orthonormal, and the half-spaces in them.
 ///
-/// Of columns that depend on one another but for a rounding nothing is left but that, in a direction that is right to a
-/// rounding. The normals are then seen from coordinates stretched along it, where their products with it are exact, and
-/// once more made orthonormal.
+/// If columns depend on one another to rounding, only rounding remains of one, in a direction that is right to a
+/// rounding. The normals are then taken in coordinates stretched along it, in which their products with it are exact,
+/// and once more made orthonormal.
 fn conditioned<D: Dimension>(dim: D, polyhedron: &Polyhedron) -> Result<(Coordinates, Rows), InscribedError> {
     let n = polyhedron.n;
     let mut coordinates = Coordinates::identity(n);
-    // Fewer leave a direction open.
+    // Fewer half-spaces leave a direction open.
     if polyhedron.len() <= n {
         return Err(InscribedError::Unbounded);
     }
-    // What is left of a column along this coordinate is nothing but rounding: the half-spaces are open along it, or as
-    // good as that.
+    // Only rounding remains of a column along this coordinate: the half-spaces are open along it, or nearly so.
     let nearly = |coordinates: &Coordinates, along: usize, ratio: f64| {
         let axis: Vec<f64> = (0..n).map(|k| if k == along { 1.0 } else { 0.0 }).collect();
         let proved = is_open(polyhedron, coordinates, &axis);
@@ -130,7 +127,7 @@ fn conditioned<D: Dimension>(dim: D, polyhedron: &Polyhedron) -> Result<(Coordin
     Err(nearly(&coordinates, 0, ratio))
 }
 
-/// Whether the half-spaces are open along M·z, or a direction of whole numbers next to it, exactly.
+/// Whether the half-spaces are open along M·z, or a direction of integers next to it, exactly.
 fn is_open(polyhedron: &Polyhedron, coordinates: &Coordinates, z: &[f64]) -> bool {
     let direction = coordinates.image(z);
     let largest = direction.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
@@ -141,10 +138,10 @@ fn is_open(polyhedron: &Polyhedron, coordinates: &Coordinates, z: &[f64]) -> boo
     largest.is_normal() && (is_out(&direction) || (1..=MOST_PARTS).any(|parts| is_out(&whole(parts))))
 }
 
-/// The largest number in a direction of whole numbers that is tried.
+/// The largest number in a direction of integers that is tried.
 const MOST_PARTS: u32 = 64;
 
-/// Whether the shortest axis is longer than what the origin loses along it by being rounded to doubles.
+/// Whether the shortest axis is longer than the rounding of the origin to doubles along it.
 fn resolved(coordinates: &Coordinates) -> bool {
     let n = coordinates.lengths.len();
     let (shortest, axis) = (coordinates.lengths[n - 1], &coordinates.axes[(n - 1) * n..]);
@@ -152,8 +149,8 @@ fn resolved(coordinates: &Coordinates) -> bool {
     shortest.is_normal() && shortest > 0.25 * UNIT_ROUNDOFF * spacing
 }
 
-/// The half-spaces with normals of unit length, so that all are measured alike, and none further from the origin than
-/// twice `reach`, the radius of a ball around it that holds the body.
+/// The half-spaces with normals of unit length, so that all are measured alike, and none farther from the origin than
+/// twice `reach`, the radius of a ball around it that contains the body.
 fn unit_rows<D: Dimension>(dim: D, rows: &Rows, reach: f64) -> Rows {
     let mut unit = rows.clone();
     for (p, s) in unit.p.chunks_exact_mut(dim.get()).zip(&mut unit.s) {
@@ -165,12 +162,12 @@ fn unit_rows<D: Dimension>(dim: D, rows: &Rows, reach: f64) -> Rows {
 }
 
 /// The map M, stored by rows, that makes the columns of A·M orthonormal, A the rows `a` of n numbers, and the least
-/// share of a column that was left of it beside the others; or the number of a column that is zero.
+/// share of a column that remained beside the others; or the index of a column that is zero.
 fn orthonormal_columns(n: usize, mut a: Vec<f64>) -> Result<(Vec<f64>, f64), usize> {
     let a = &mut a[..];
     let mut map: Vec<f64> = (0..n * n).map(|at| if at % (n + 1) == 0 { 1.0 } else { 0.0 }).collect();
     let map = &mut map[..];
-    // Columns of wildly different size come from coordinates in different units: no sign of dependence.
+    // Columns of very different size come from coordinates in different units, not from dependence.
     for k in 0..n {
         let size = a.chunks_exact(n).map(|row| row[k].abs()).fold(0.0, f64::max);
         if size == 0.0 {

@@ -31,7 +31,7 @@ pub(crate) struct System {
     weighted: Vec<f64>,
 }
 
-/// A step in all unknowns.
+/// A step of all unknowns.
 pub(crate) struct Direction {
     /// ΔB on and above the diagonal, then Δd.
     delta: Vec<f64>,
@@ -60,10 +60,10 @@ impl Direction {
 }
 
 impl Direction {
-    /// How far B + t·ΔB, d + t·Δd keeps every cᵢ ≥ 0; infinite where it always does.
+    /// How far B + t·ΔB, d + t·Δd keeps every cᵢ ≥ 0; infinite if it always does.
     ///
-    /// cᵢ(t) = a − t·e − |u + t·w| with u = B·pᵢ, w = ΔB·pᵢ, a = 1 − pᵢ·d, e = pᵢ·Δd. Its first root is that of
-    /// (|w|² − e²)t² + 2(u·w + a·e)t − (a² − |u|²), found without cancellation.
+    /// cᵢ(t) = a − t·e − |u + t·w| with u = B·pᵢ, w = ΔB·pᵢ, a = 1 − pᵢ·d, e = pᵢ·Δd. Its first root is that of (|w|² −
+    /// e²)t² + 2(u·w + a·e)t − (a² − |u|²), found without cancellation.
     pub(crate) fn reach<D: Dimension>(&self, dim: D, p: &[f64], point: &Point) -> f64 {
         let n = dim.get();
         let mut db = dim.zero_matrix();
@@ -118,7 +118,7 @@ impl System {
         }
     }
 
-    /// Assembles and factors the system at a point; false where it is not numerically definite.
+    /// Assembles and factors the system at a point; false if it is not numerically definite.
     pub(crate) fn assemble<D: Dimension>(&mut self, dim: D, p: &[f64], point: &Point, y: &[f64]) -> bool {
         let n = dim.get();
         let size = self.size;

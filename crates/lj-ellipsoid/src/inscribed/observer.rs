@@ -11,5 +11,5 @@ pub struct InscribedIterate {
     pub log_det_gap: f64,
 }
 
-/// Who sees the iterates. The solver is compiled once for all observers.
+/// The receiver of the iterates. The solver is compiled once for all observers.
 pub(crate) type Observer<'a> = dyn FnMut(InscribedIterate) + 'a;

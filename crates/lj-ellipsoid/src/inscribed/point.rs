@@ -1,9 +1,9 @@
-//! An ellipsoid in { z : pᵢ·z ≤ 1 }, and what follows from it.
+//! An ellipsoid in { z : pᵢ·z ≤ 1 }, and the quantities that follow from it.
 
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::cholesky_log_det;
 
-/// The unknowns of the program and what follows from them.
+/// The unknowns of the program and the quantities that follow from them.
 #[derive(Clone)]
 pub(crate) struct Point {
     /// B, symmetric, n × n.
@@ -30,7 +30,7 @@ impl Point {
         }
     }
 
-    /// Evaluates everything that follows from B and d; false unless B ≻ 0 and all cᵢ > 0.
+    /// Evaluates all quantities that follow from B and d; false unless B ≻ 0 and all cᵢ > 0.
     pub(crate) fn evaluate<D: Dimension>(&mut self, dim: D, p: &[f64]) -> bool {
         let n = dim.get();
         let mut factor = dim.matrix(self.b.iter().copied());

@@ -37,7 +37,7 @@ impl Polyhedron {
             if size == 0.0 {
                 return Err(InscribedError::ZeroNormal { index });
             }
-            // A power of two moves no bit: what holds for these rows holds for the given ones.
+            // A power of two changes no mantissa: statements about these rows hold for the given ones.
             let unit = power_of_two_inverse(size);
             normals.extend(normal.iter().map(|x| x * unit));
             offsets.push(offset * unit);
@@ -52,8 +52,8 @@ impl Polyhedron {
         self.offsets.len()
     }
 
-    /// Why there is no ellipsoid, where the search for an interior ended at this ratio of the shortest to the longest
-    /// axis: empty or flat if two half-spaces say so by themselves, else too thin for it.
+    /// The reason why there is no ellipsoid, if the search for an interior ended at this ratio of the shortest to the
+    /// longest axis: empty or flat if two half-spaces prove it by themselves, otherwise too thin.
     pub(crate) fn without_interior(&self, ratio: f64) -> InscribedError {
         let pairs = (0..self.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
         if pairs.take(MOST_PAIRS).any(|(i, j)| self.exclude_one_another(i, j)) {
@@ -82,17 +82,17 @@ impl Polyhedron {
 }
 
 impl<D: Dimension> Body<D> for Polyhedron {
-    /// The largest scale that is proved to keep the ellipsoid in all half-spaces: a·c + |diag(axes)·R·a| ≤ b of the
-    /// doubles as they are, by bounds on the rounding of both sides.
+    /// The largest scale that is proved to keep the ellipsoid in all half-spaces: a·c + |diag(axes)·R·a| ≤ b exactly
+    /// for the doubles, by bounds on the rounding of both sides.
     ///
-    /// [`support_value`] may then by its own rounding still be a rounding above b: the ellipsoid shrinks once more,
-    /// twice as far every time.
+    /// By its own rounding, [`support_value`] may then still exceed b by a rounding: the ellipsoid shrinks once more,
+    /// twice as far each time.
     fn touch(&self, shape: &mut Shape<D>) -> Option<()> {
         let most = |(a, b): (&[f64], f64)| {
             let to_center = a.iter().copied().zip(shape.center.as_ref().iter().map(|c| -c));
             let (room, error) = twofold::dot_with_error([(b, 1.0)].into_iter().chain(to_center));
             let reach = reach_at_most(shape.axes.as_ref(), shape.semi_axes.as_ref(), a);
-            // The scale itself, and one at which the rounding of the support value is of no account.
+            // The scale itself, and one at which the rounding of the support value is negligible.
             [(room - error) / reach, (room - error - 16.0 * UNIT_ROUNDOFF * b.abs()) / reach * (1.0 - 1e-12)]
         };
         let scales: Vec<[f64; 2]> = self.rows().map(most).collect();
@@ -120,8 +120,8 @@ impl<D: Dimension> Body<D> for Polyhedron {
     }
 }
 
-/// Pairs of half-spaces looked at before a body is called empty.
+/// Pairs of half-spaces tested before a body counts as empty.
 const MOST_PAIRS: usize = 1 << 22;
 
-/// Doubling shrinkages: the last is all of the size.
+/// Doubling shrinkages: the last is the whole size.
 const MOST_SHRINKS: usize = 54;

@@ -31,7 +31,7 @@ pub(crate) struct Dual {
     pub(crate) y: Vec<f64>,
 }
 
-/// Corrects y to Σyᵢpᵢ = 0 in so many passes, in proportion to itself so that no sign changes, and evaluates the bound.
+/// Corrects y to Σyᵢpᵢ = 0 in so many passes, in proportion to y so that no sign changes, and evaluates the bound.
 fn dual_bound<D: Dimension>(dim: D, p: &[f64], v: &[f64], y: &[f64], passes: usize) -> Option<Dual> {
     let n = dim.get();
     // y'ᵢ = yᵢ(1 − pᵢ·λ), (Σyᵢpᵢpᵢᵀ)λ = Σyᵢpᵢ.
@@ -77,18 +77,18 @@ fn dual_bound<D: Dimension>(dim: D, p: &[f64], v: &[f64], y: &[f64], passes: usi
 /// The complementarity below which the dual bound is evaluated.
 const WORTH_BOUNDING: f64 = 1e-3;
 
-/// Steps taken beyond the gap asked for, each of which shrinks it by two to three orders, and the gap they aim at.
+/// Steps taken beyond the required gap, each of which shrinks it by two to three orders, and the gap they aim at.
 const POLISHING_STEPS: usize = 3;
 const ROUNDING: f64 = 1e-13;
 
-/// Below this gap steps are full ones, and polishing is worth its price.
+/// Below this gap steps are full ones, and polishing is worth its cost.
 const NEAR: f64 = 1e-6;
 
-/// Where the iteration ended.
+/// The result of the iteration.
 pub(crate) struct Maximum {
     /// The best point.
     pub(crate) point: Point,
-    /// What its multipliers prove.
+    /// The bound that its multipliers prove.
     pub(crate) dual: Option<Dual>,
     pub(crate) ended: Status,
     /// Newton steps.
@@ -119,8 +119,8 @@ pub(crate) fn maximize<D: Dimension>(
         }
         iteration += 1;
         mu = centring * complementarity / m;
-        // The share of what is left to the boundary that no step takes, and near the end that of the products cᵢyᵢ to
-        // aim at. Smaller ones than 1e-3 leave the products so uneven that the next steps pay for it.
+        // The share of the way to the boundary that no step takes, and near the end that of the products cᵢyᵢ to aim
+        // at. Values below 1e-3 leave the products so uneven that the next steps are poor.
         let boundary = complementarity.clamp(1e-3, 0.03);
         let Some(length) = at.step(mu, boundary) else { break Status::Stalled };
         // Near the end full steps are taken and μ may fall fast; a bold step from afar costs several to recover.
@@ -147,7 +147,7 @@ struct PrimalDualIterate<'a, D> {
 }
 
 impl<'a, D: Dimension> PrimalDualIterate<'a, D> {
-    /// A ball about the origin half as large as fits; `None` where that is out of the range of `f64`.
+    /// A ball about the origin half as large as fits; `None` if it is out of the range of `f64`.
     fn start(dim: D, p: &'a [f64]) -> Option<Self> {
         let n = dim.get();
         let m = p.len() / n;
@@ -162,14 +162,14 @@ impl<'a, D: Dimension> PrimalDualIterate<'a, D> {
         Some(Self { dim, p, point, y, trial, system: System::new(n, m), direction: Direction::new(n, m) })
     }
 
-    /// The gap that the multipliers prove, and how; infinite while it is too large to be worth its price.
+    /// The gap that the multipliers prove, and its proof; infinite while it is too large to be worth its cost.
     fn bound(&self, complementarity: f64) -> (f64, Option<Dual>) {
         let Self { dim, p, point, y, .. } = self;
         let n = dim.get() as f64;
         if !(complementarity < WORTH_BOUNDING) {
             return (f64::INFINITY, None);
         }
-        // The correction is exact but for rounding, which a second one removes.
+        // The correction is exact except for rounding, which a second one removes.
         let passes = if complementarity < NEAR { 2 } else { 1 };
         let Some(dual) = dual_bound(*dim, p, &point.v, y, passes) else { return (f64::INFINITY, None) };
         let growth = point.h.iter().zip(&point.c).fold(f64::INFINITY, |g: f64, (h, c)| g.min((h + c) / h));
@@ -177,7 +177,7 @@ impl<'a, D: Dimension> PrimalDualIterate<'a, D> {
     }
 
     /// One Newton step that aims at the products cᵢyᵢ = μ and leaves the share `boundary` of the way to the boundary.
-    /// Answers the shorter of its two lengths; `None` where there is no step to take.
+    /// Returns the shorter of its two lengths; `None` if there is no step to take.
     fn step(&mut self, mu: f64, boundary: f64) -> Option<f64> {
         let Self { dim, p, point, y, trial, system, direction } = self;
         if !system.assemble(*dim, p, point, y) {
@@ -203,13 +203,12 @@ impl<'a, D: Dimension> PrimalDualIterate<'a, D> {
     }
 }
 
-/// What was best so far, and whether to go on.
+/// The best iterate so far, and the state that decides whether to go on.
 struct Record {
     gap: f64,
     dual: Option<Dual>,
     without_progress: usize,
-    /// Steps left beyond the gap asked for, and the point before the last of them: a step of rounding may lead
-    /// anywhere.
+    /// Steps left beyond the required gap, and the point before the last of them: a step of rounding may lead anywhere.
     polishing: usize,
     kept: Option<Point>,
 }
@@ -219,7 +218,7 @@ impl Record {
         Self { gap: f64::INFINITY, dual: None, without_progress: 0, polishing: POLISHING_STEPS, kept: None }
     }
 
-    /// Takes note of an iterate, and answers how the iteration ended if it did; `point` then is the best.
+    /// Records an iterate, and returns how the iteration ended if it did; `point` is then the best.
     fn judge(
         &mut self,
         gap: f64,
@@ -254,7 +253,7 @@ impl Record {
     }
 }
 
-/// How far y + length·Δy stays positive; infinite where it always does.
+/// How far y + length·Δy stays positive; infinite if it always does.
 fn length(y: &[f64], dy: &[f64]) -> f64 {
     let limits = y.iter().zip(dy).filter(|(_, dy)| **dy < 0.0).map(|(y, dy)| -y / dy);
     limits.fold(f64::INFINITY, f64::min)

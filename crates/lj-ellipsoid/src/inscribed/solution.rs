@@ -41,13 +41,12 @@ pub(crate) fn solve<D: Dimension>(
         p.iter_mut().for_each(|x| *x /= s);
     }
     let Maximum { point, dual, ended, iterations } = maximize(dim, &p, options, observer)?;
-    // Both logarithms of determinants are of lengths in one unit, so that it does not count which one they were given
-    // in.
+    // Both logarithms of determinants are for lengths in one unit, so that the unit of the input does not matter.
     let per_unit = power_of_two_inverse(coordinates.lengths.iter().copied().fold(0.0, f64::max));
     let y = dual.as_ref().map_or(&[][..], |dual| &dual.y);
     let log_det_bound = match &dual {
         Some(Dual { y, .. }) => {
-            // A rounding each of the numbers that were divided, and of the quotient.
+            // A rounding for each of the divided numbers, and for the quotient.
             let error: Vec<f64> = rows.error.iter().map(|e| e + 4.0 * UNIT_ROUNDOFF).collect();
             log_det_at_most(dim, &p, &point, y, &error, &|i, weight| body.beyond(i, weight))
                 + coordinates.log_det_at_most(per_unit)
@@ -72,8 +71,8 @@ pub(crate) fn solve<D: Dimension>(
     round_inward(dim, &mut shape);
     let [sum, size] = logarithms(shape.semi_axes.as_ref(), per_unit);
     let log_det_gap = 2.0 * (log_det_bound - sum) + 4.0 * UNIT_ROUNDOFF * (size + n as f64);
-    // The ellipsoid is proved to be inside and the bound is one on all that are: a difference below zero, or none,
-    // would prove only that numbers left the range in which the errors are bounded.
+    // The ellipsoid is proved to be inside and the bound holds for all that are. A negative difference, or NaN, would
+    // only prove that numbers left the range in which the errors are bounded.
     let log_det_gap = if log_det_gap >= 0.0 { log_det_gap } else { f64::INFINITY };
     let status = match ended {
         _ if log_det_gap <= options.epsilon => Status::Converged,
