@@ -12,7 +12,7 @@ use crate::numerics::linalg::dot;
 use crate::options::{EnclosingOptions, InscribedOptions};
 use crate::shape::Shape;
 
-/// By how much the axes that are read may miss being orthonormal. Those of an answer do to rounding.
+/// How much the axes read may deviate from orthonormal ones. Those of an answer are right to rounding.
 const SLACK: f64 = 1e-9;
 
 pub(crate) fn epsilon<'de, D: Deserializer<'de>>(data: D) -> Result<f64, D::Error> {
@@ -41,7 +41,7 @@ pub(crate) mod point {
     }
 }
 
-/// A gap, of which nothing may be known: it is infinite then, and null in data, since JSON has no infinity.
+/// A gap. An unknown one is infinite, and null in data, because JSON has no infinity.
 pub(crate) mod gap {
     use super::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -56,7 +56,7 @@ pub(crate) mod gap {
 }
 
 /// An ellipsoid of any dimension. The matrix and its determinant follow from the rest only up to their outward
-/// rounding, and are kept.
+/// rounding, and are stored.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename = "Ellipsoid", deny_unknown_fields)]
 struct Data<'a> {
@@ -73,7 +73,7 @@ impl<'a> Data<'a> {
         Self { center: center.into(), semi_axes: semi_axes.into(), axes: rows(axes), matrix: rows(matrix), log_det }
     }
 
-    /// The shape, if it is one.
+    /// The shape, if the data is valid.
     fn shape(self) -> Result<Shape<Dynamic>, &'static str> {
         let n = self.center.len();
         let is_square = |rows: &[Cow<'_, [f64]>]| rows.len() == n && rows.iter().all(|row| row.len() == n);

@@ -126,7 +126,7 @@ pub struct EnclosingDyn {
     pub scans: usize,
 }
 
-/// The number of coordinates that all of the points have.
+/// The number of coordinates, which must be the same for all points.
 fn dimension<P: AsRef<[f64]>>(points: &[P]) -> usize {
     let n = points.first().map_or(0, |p| p.as_ref().len());
     assert!(points.iter().all(|p| p.as_ref().len() == n), "all points must have as many coordinates as the first, {n}");

@@ -138,7 +138,7 @@ impl Ellipsoid<3> {
     pub fn rotation(&self) -> [f64; 4] {
         // Column k of the rotation matrix is axis k.
         let m = |i: usize, k: usize| self.axes[k][i];
-        // 4·q² of x, y, z and w.
+        // The values 4·q² of x, y, z and w.
         let squares = [
             1.0 + m(0, 0) - m(1, 1) - m(2, 2),
             1.0 - m(0, 0) + m(1, 1) - m(2, 2),
@@ -146,7 +146,7 @@ impl Ellipsoid<3> {
             1.0 + m(0, 0) + m(1, 1) + m(2, 2),
         ];
         let largest = (1..4).fold(0, |best, i| if squares[i] > squares[best] { i } else { best });
-        // 4·q·r for every pair of components.
+        // The values 4·q·r for every pair of components.
         let (xy, xz, yz) = (m(0, 1) + m(1, 0), m(0, 2) + m(2, 0), m(1, 2) + m(2, 1));
         let (xw, yw, zw) = (m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
         let products = match largest {
@@ -161,7 +161,7 @@ impl Ellipsoid<3> {
 }
 
 /// The length |diag(1/a)·R·(x − c)| over the semi-axes that are not zero. Promises about points as evaluated in `f64`
-/// are about this evaluation.
+/// refer to this evaluation.
 #[inline]
 pub(crate) fn radius_at(center: &[f64], axes: &[f64], semi_axes: &[f64], x: &[f64]) -> f64 {
     let n = center.len();
@@ -178,10 +178,9 @@ pub(crate) fn radius_at(center: &[f64], axes: &[f64], semi_axes: &[f64], x: &[f6
     square.sqrt()
 }
 
-/// No less than |diag(1/a)·R·(x − c)| over the semi-axes that are not zero, the sums taken exactly of the doubles as
-/// they are.
+/// No less than |diag(1/a)·R·(x − c)| over the semi-axes that are not zero, as exact sums of the doubles.
 ///
-/// As in [`reach_at_most`], with a quotient more.
+/// As in [`reach_at_most`], with one more quotient.
 pub(crate) fn radius_at_most(center: &[f64], axes: &[f64], semi_axes: &[f64], x: &[f64]) -> f64 {
     let n = center.len();
     let mut square = n as f64 * f64::from_bits(1);
@@ -195,18 +194,17 @@ pub(crate) fn radius_at_most(center: &[f64], axes: &[f64], semi_axes: &[f64], x:
     square.sqrt() * (1.0 + (n as f64 + 6.0) * f64::EPSILON)
 }
 
-/// direction·c + |diag(a)·R·direction|. What is promised of half-spaces as evaluated in `f64` is promised of this very
-/// evaluation.
+/// direction·c + |diag(a)·R·direction|. Promises about half-spaces as evaluated in `f64` refer to this evaluation.
 ///
-/// Of a thin turned ellipsoid a long axis along the direction and the direction along a long axis are differences of
-/// large products: a plain sum would lose 1e-16 of the length of the ellipsoid, and with it all of its thickness.
+/// If a turned ellipsoid is thin, a long axis along the direction and the direction along a long axis are differences
+/// of large products: a plain sum would lose 1e-16 of the length of the ellipsoid, and with it all of its thickness.
 pub(crate) fn support_value(center: &[f64], axes: &[f64], semi_axes: &[f64], direction: &[f64]) -> f64 {
     let reach = square_of_reach(axes, semi_axes, direction, |(along, _)| along).sqrt();
     let to_center = direction.iter().copied().zip(center.iter().copied());
     twofold::dot(to_center.chain([(reach, 1.0)]))
 }
 
-/// No less than |diag(a)·R·direction|, the sums taken exactly of the doubles as they are.
+/// No less than |diag(a)·R·direction|, as exact sums of the doubles.
 ///
 /// Squares, their sum and the root lose less than n + 4 roundings, and a square that underflows less than the smallest
 /// number.
@@ -216,7 +214,7 @@ pub(crate) fn reach_at_most(axes: &[f64], semi_axes: &[f64], direction: &[f64]) 
     (square + n * f64::from_bits(1)).sqrt() * (1.0 + (n + 4.0) * f64::EPSILON)
 }
 
-/// The square |diag(a)·R·direction|², of components in twice the precision, each made by `component` of the sum and
+/// The square |diag(a)·R·direction|² from components in twice the precision, each made by `component` of the sum and
 /// the bound on its error.
 fn square_of_reach(axes: &[f64], semi_axes: &[f64], direction: &[f64], component: impl Fn((f64, f64)) -> f64) -> f64 {
     let along = |axis: &[f64]| twofold::dot_with_error(axis.iter().copied().zip(direction.iter().copied()));

@@ -6,7 +6,7 @@ use crate::numerics::linalg::{
 };
 use crate::numerics::twofold;
 
-/// An ellipsoid of any dimension: what [`Ellipsoid`](crate::Ellipsoid) holds.
+/// An ellipsoid of any dimension: the data of [`Ellipsoid`](crate::Ellipsoid).
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Shape<N: Dimension> {
     pub(crate) center: N::Point,
@@ -19,7 +19,7 @@ pub(crate) struct Shape<N: Dimension> {
 }
 
 impl Shape<Dynamic> {
-    /// The same where the dimension is that of `dim`.
+    /// The same shape in the dimension of `dim`.
     pub(crate) fn in_dimension<N: Dimension>(self, dim: N) -> Shape<N> {
         Shape {
             center: dim.point(self.center.into_iter()),
@@ -35,7 +35,7 @@ impl Shape<Dynamic> {
 pub(crate) fn principal_axes<N: Dimension>(dim: N, r: usize, mut map: N::Matrix) -> Shape<N> {
     let n = dim.get();
     let rows = &mut map.as_mut()[..r * n];
-    // A power of two keeps the squares in range and moves no bit.
+    // A power of two keeps the squares in range and changes no mantissa.
     let unit = power_of_two_inverse(rows.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
     rows.iter_mut().for_each(|x| *x *= unit);
     triangularize(dim, rows);
@@ -58,7 +58,7 @@ pub(crate) fn shape_from_axes<N: Dimension>(
 ) -> Shape<N> {
     let n = dim.get();
     let (a, rows) = (&mut semi_axes.as_mut()[..n], &mut axes.as_mut()[..n * n]);
-    // By insertion, which keeps the order of equals.
+    // By insertion, which keeps the order of equal ones.
     for k in 1..r {
         let mut at = k;
         while at > 0 && a[at].total_cmp(&a[at - 1]).is_gt() {
@@ -86,7 +86,7 @@ pub(crate) fn shape_from_axes<N: Dimension>(
 }
 
 /// Scales the matrix so that { x : (x − c)ᵀX(x − c) ≤ 1 } is proved to be within the ellipsoid of the axes, unless
-/// rounding leaves it without a meaning.
+/// rounding makes it meaningless.
 ///
 /// With D = diag(a) that is so exactly if D·R·X·Rᵀ·D = I + F is no less than I. Its entries are sums in twice the
 /// precision, and |F| ≤ f < 1, the rounding of the scaled entries of X included, bounds it below by 1 − f.
@@ -105,8 +105,7 @@ pub(crate) fn round_inward<N: Dimension>(dim: N, shape: &mut Shape<N>) {
             let scaled: Vec<f64> = left.iter().map(|r| a * r).collect();
             let entry = twofold::dot(pairs(&scaled, &image).into_iter().chain([(unit, 1.0)]));
             square += entry * entry;
-            // A rounding of the image, its factor, the row and the entries of X, which is symmetric, when they are
-            // scaled.
+            // A rounding each for the image, its factor, the row and the scaled entries of X, which is symmetric.
             rounding += 8.0 * UNIT_ROUNDOFF * a * b * left.iter().zip(&size).map(|(r, s)| (r * s).abs()).sum::<f64>();
         }
     }
@@ -129,8 +128,8 @@ fn complete_rotation<N: Dimension>(dim: N, r: usize, axes: &mut [f64]) {
 
 /// Replaces the rows from `r` on by ones that make all of them orthonormal.
 ///
-/// Householder's reflections I − 2vvᵀ/|v|², one for each row there is, take row k to ±eₖ. Backwards they take the unit
-/// vectors from eᵣ on to what is missing.
+/// Householder's reflections I − 2vvᵀ/|v|², one for each present row, take row k to ±eₖ. In reverse they take the unit
+/// vectors from eᵣ on to the missing rows.
 fn complete_basis<N: Dimension>(dim: N, r: usize, axes: &mut [f64]) {
     let n = dim.get();
     let reflect = |v: &N::Point, x: &mut [f64]| {

@@ -13,7 +13,7 @@ impl TryFrom<Ellipsoid<2>> for Shape<DVec2> {
     /// # Errors
     /// [`InvalidShape`] if a semi-axis is zero: the ellipsoid of a flat set.
     fn try_from(ellipsoid: Ellipsoid<2>) -> Result<Self, InvalidShape> {
-        // The rows of ours are the columns of theirs.
+        // The rows of our matrix are the columns of theirs.
         let axes = DMat2::from_cols_array_2d(&ellipsoid.axes());
         Self::from_axes(ellipsoid.center().into(), ellipsoid.semi_axes().into(), axes)
     }

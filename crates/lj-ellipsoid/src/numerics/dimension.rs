@@ -2,14 +2,14 @@
 
 use std::fmt::Debug;
 
-/// Points looked at together: passes over many points work on blocks of this many, coordinate by coordinate, which the
+/// The number of points in a block: passes over many points work on blocks, coordinate by coordinate, which the
 /// compiler turns into vector instructions of whatever width the target has.
 pub(crate) const LANES: usize = 4;
 
-/// What the numerical kernels know about the dimension. Every loop runs to `get()`: for [`Const`] that is a constant
-/// after monomorphisation, so the one implementation is unrolled for N = 2, 3 and serves any N at run time.
+/// The dimension, for the numerical kernels. Every loop runs to `get()`, which is a constant for [`Const`] after
+/// monomorphisation: the one implementation is unrolled for N = 2, 3 and also works for any N at run time.
 pub(crate) trait Dimension: Copy {
-    /// Room for one point: an array, or a vector where the length is not known.
+    /// Room for one point: an array, or a vector if the length is known only at run time.
     type Point: AsRef<[f64]> + AsMut<[f64]> + Clone + Debug + PartialEq + Send + Sync;
 
     /// Room for a square matrix, row by row.

@@ -1,4 +1,4 @@
-//! Small dense kernels on row-major `n × n` slices. Matrices here are at most some tens wide, so plain loops win.
+//! Small dense kernels on row-major `n × n` slices. Matrices are at most some tens wide, so plain loops win.
 
 use crate::numerics::dimension::Dimension;
 
@@ -15,13 +15,13 @@ pub(crate) fn power_of_two_inverse(extent: f64) -> f64 {
     if extent == 0.0 {
         return 1.0;
     }
-    // Exponents are kept to where the power and its inverse are normal numbers.
+    // Exponents are limited so that the power and its inverse are normal numbers.
     let exponent = ((extent.to_bits() >> 52) as i64 - 1023).clamp(-1000, 1000);
     f64::from_bits(((1023 - exponent) as u64) << 52)
 }
 
-/// Σ ln xᵢ of positive numbers, as the logarithm of their product: one rounding of a logarithm in the common case, none
-/// of whose products is extreme.
+/// Σ ln xᵢ of positive numbers, as the logarithm of their product: one rounding of a logarithm in the usual case, in
+/// which no product is extreme.
 #[inline(always)]
 pub(crate) fn sum_of_logarithms(numbers: impl Iterator<Item = f64>) -> f64 {
     let mut sum = 0.0;
@@ -40,8 +40,7 @@ pub(crate) fn sum_of_logarithms(numbers: impl Iterator<Item = f64>) -> f64 {
     sum + libm::log(product)
 }
 
-/// Σ ln xᵢ, and Σ |ln xᵢ|, of which its rounding is a part, of lengths in a unit: the same bits whatever unit they
-/// were in before.
+/// Σ ln xᵢ for lengths in a unit, and Σ |ln xᵢ|, of which its rounding is a part: the same bits from any unit.
 pub(crate) fn logarithms(lengths: &[f64], per_unit: f64) -> [f64; 2] {
     let numbers = lengths.iter().map(|a| a * per_unit);
     [sum_of_logarithms(numbers.clone()), numbers.map(|a| libm::log(a).abs()).sum()]
@@ -73,7 +72,7 @@ pub(crate) fn cholesky<D: Dimension>(dim: D, a: &mut [f64]) -> bool {
     true
 }
 
-/// As [`cholesky`], answering ln det A; `None` where `a` is not numerically positive definite.
+/// Like [`cholesky`], but returns ln det A; `None` if `a` is not numerically positive definite.
 #[inline(always)]
 pub(crate) fn cholesky_log_det<D: Dimension>(dim: D, a: &mut [f64]) -> Option<f64> {
     let n = dim.get();
@@ -109,7 +108,7 @@ pub(crate) fn solve_lower_transpose<D: Dimension>(dim: D, l: &[f64], x: &mut [f6
 /// order of its columns: T ← H·T, so that `TᵀT` is unchanged.
 ///
 /// Householder's QR with column pivoting and rows sorted by size: its error is small row by row and column by column
-/// (Cox & Higham 1998), so axes of wildly different size survive, wherever the grading stands.
+/// (Cox & Higham 1998), so axes of very different size survive, in whatever order.
 pub(crate) fn triangularize<D: Dimension>(dim: D, t: &mut [f64]) {
     let n = dim.get();
     let rows = t.len() / n;
@@ -170,7 +169,7 @@ pub(crate) fn triangularize<D: Dimension>(dim: D, t: &mut [f64]) {
 pub(crate) fn orthogonalize_rows<D: Dimension>(dim: D, t: &mut [f64]) {
     let n = dim.get();
     let rows = t.len() / n;
-    // Convergence is quadratic after a few sweeps; thirty bound it for NaN and nothing else.
+    // Convergence is quadratic after a few sweeps; only NaN needs the bound of thirty.
     for _ in 0..30 {
         let mut rotated = false;
         for i in 0..rows {

@@ -1,4 +1,4 @@
-//! The arithmetic under both problems: small dense matrices, and sums in twice the working precision.
+//! The arithmetic of both problems: small dense matrices, and sums in twice the working precision.
 
 pub(crate) mod dimension;
 pub(crate) mod linalg;

@@ -1,7 +1,7 @@
 //! Sums of products in twice the working precision.
 //!
-//! What a thin body is made of are small differences of large products, and they decide its shape. They are computed as
-//! if in a format of 106 bits and rounded once.
+//! Small differences of large products decide the shape of a thin body. They are computed as if in a format of 106 bits
+//! and rounded once.
 //!
 //! # References
 //! T. J. Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18 (1971).
@@ -11,16 +11,16 @@ use std::ops::RangeInclusive;
 
 use crate::numerics::linalg::UNIT_ROUNDOFF;
 
-/// Σxᵢyᵢ with an error of at most u·|Σxᵢyᵢ| + (k·u)²·Σ|xᵢyᵢ| for k terms, where no product leaves the range of `f64`;
-/// there it is the plain sum.
+/// Σxᵢyᵢ with an error of at most u·|Σxᵢyᵢ| + (k·u)²·Σ|xᵢyᵢ| for k terms, if no product leaves the range of `f64`;
+/// otherwise it is the plain sum.
 pub(crate) fn dot(terms: impl IntoIterator<Item = (f64, f64)>) -> f64 {
     let mut sum = Sum::default();
     terms.into_iter().for_each(|(x, y)| sum.add_product(x, y));
     sum.total()
 }
 
-/// [`dot`] and a bound on its error that holds in all of the range of `f64`: products that underflow lose less than the
-/// smallest normal number each, and where the correction overflowed the bound is that of the plain sum.
+/// [`dot`] and a bound on its error that holds in the whole range of `f64`: products that underflow lose less than the
+/// smallest normal number each, and if the correction overflowed the bound is that of the plain sum.
 pub(crate) fn dot_with_error(terms: impl IntoIterator<Item = (f64, f64)>) -> (f64, f64) {
     let (mut sum, mut size, mut count) = (Sum::default(), 0.0, 0.0);
     for (x, y) in terms {
@@ -29,13 +29,13 @@ pub(crate) fn dot_with_error(terms: impl IntoIterator<Item = (f64, f64)>) -> (f6
         count += 1.0;
     }
     let (total, lost) = (sum.total(), count * UNIT_ROUNDOFF);
-    // Twice what is proved, which makes up for the rounding of the bound.
+    // Twice the proved bound, for the rounding of the bound itself.
     let of_terms = if sum.is_corrected() { lost * lost } else { lost };
     (total, 2.0 * (UNIT_ROUNDOFF * total.abs() + of_terms * size + count * f64::MIN_POSITIVE))
 }
 
-/// Whether Σxᵢyᵢ ≤ 0, exactly: where the bound on the error does not tell, the products are summed without any. False
-/// also where a product leaves the range in which it has an error that is a number.
+/// Whether Σxᵢyᵢ ≤ 0, exactly: if the bound on the error does not decide, the products are summed without error. False
+/// also if a product leaves the range in which its error is a number.
 pub(crate) fn is_at_most_zero(terms: impl Iterator<Item = (f64, f64)> + Clone) -> bool {
     const EXACT: RangeInclusive<f64> = 1e-280..=1e280;
     let (total, error) = dot_with_error(terms.clone());
@@ -60,7 +60,7 @@ pub(crate) fn is_at_most_zero(terms: impl Iterator<Item = (f64, f64)> + Clone) -
     expansion.iter().rfind(|x| **x != 0.0).is_none_or(|x| *x < 0.0)
 }
 
-/// A sum in twice the precision: the rounded sum, and the sum of what its additions and products lost.
+/// A sum in twice the precision: the rounded sum, and the sum of the errors of its additions and products.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Sum {
     sum: f64,
@@ -82,7 +82,7 @@ impl Sum {
 
     /// The sum rounded once.
     pub(crate) fn total(&self) -> f64 {
-        // Splitting a factor above 2⁹⁹⁶ overflows: what is lost is the correction.
+        // Splitting a factor above 2⁹⁹⁶ overflows: then there is no correction.
         if self.is_corrected() { self.sum + self.rest } else { self.sum }
     }
 
@@ -98,7 +98,7 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - (sum - from_b)) + (b - from_b))
 }
 
-/// a·b as the rounded product and its error, which is a number too where nothing underflows (Dekker).
+/// a·b as the rounded product and its error, which is a number too if nothing underflows (Dekker).
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn cancellation_leaves_the_small_difference() {
-        // (1 + 2⁻³⁰)² − 1 − 2⁻²⁹ = 2⁻⁶⁰, of which plain arithmetic sees nothing.
+        // (1 + 2⁻³⁰)² − 1 − 2⁻²⁹ = 2⁻⁶⁰, which plain arithmetic loses.
         let a = 1.0 + 2f64.powi(-30);
         assert_eq!(dot([(a, a), (-1.0, 1.0), (-1.0, 2f64.powi(-29))]), 2f64.powi(-60));
         assert_eq!(a * a - 1.0 - 2f64.powi(-29), 0.0);

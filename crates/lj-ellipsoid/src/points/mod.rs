@@ -1,4 +1,4 @@
-//! Where the points come from: a slice of anything that converts into `[f64; N]`, or rows of a matrix.
+//! The source of the points: a slice of anything that converts into `[f64; N]`, or rows of a matrix.
 
 pub(crate) mod parallel;
 
@@ -6,7 +6,7 @@ use crate::numerics::dimension::{Const, Dimension, LANES};
 
 /// A finite sequence of points, read by copy.
 pub(crate) trait Points: Sync {
-    /// How much of the dimension the compiler knows.
+    /// The dimension, as far as the compiler knows it.
     type Dim: Dimension + Sync;
 
     fn dim(&self) -> Self::Dim;
@@ -17,7 +17,7 @@ pub(crate) trait Points: Sync {
     fn read(&self, i: usize, out: &mut [f64]);
 
     /// Copies the points from `at` on into the lanes of `block`, a row for each coordinate, by way of `v`; from `end`
-    /// on the point before it is repeated.
+    /// on the last point is repeated.
     #[inline(always)]
     fn read_block(&self, at: usize, end: usize, v: &mut [f64], block: &mut [[f64; LANES]]) {
         read_lanes(self, at, end, v, block);
@@ -56,7 +56,7 @@ impl<P: Into<[f64; N]> + Copy + Sync, const N: usize> Points for PointSlice<'_, 
         out.copy_from_slice(&self.0[i].into());
     }
 
-    /// Of all blocks but the last the bounds are checked once.
+    /// The bounds of all blocks but the last are checked once.
     #[inline(always)]
     fn read_block(&self, at: usize, end: usize, v: &mut [f64], block: &mut [[f64; LANES]]) {
         let Some(points) = self.0[at..end].first_chunk::<LANES>() else {

@@ -1,4 +1,4 @@
-//! Passes over many points in parts, which are split among the cores where the feature `rayon` is on.
+//! Passes over many points in parts, which are split among the cores with the feature `rayon`.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// Parts of this many points are worth a task.
 const PART: usize = 1 << 15;
 
-/// Applies `look` to ranges that together are `0..len`, and merges what it found in the order of the ranges.
+/// Applies `look` to ranges that together are `0..len`, and merges the results in the order of the ranges.
 ///
 /// The ranges depend on `len` alone, with and without `rayon` and whatever the number of cores: so does the result.
 pub(crate) fn in_parts<T: Send>(len: usize, look: impl Fn(Range<usize>) -> T + Sync, merge: impl Fn(T, T) -> T) -> T {
@@ -25,7 +25,7 @@ pub(crate) fn in_parts<T: Send>(len: usize, look: impl Fn(Range<usize>) -> T + S
     rest.map(part).fold(part(0), merge)
 }
 
-/// Whether this thread is to look at the parts one after the other, as it does without `rayon`; tests compare the two.
+/// Whether this thread processes the parts one after the other, as without `rayon`; tests compare the two.
 #[cfg(feature = "rayon")]
 fn in_turn() -> bool {
     #[cfg(test)]
