@@ -182,7 +182,7 @@ pub fn map_pairs<'a, V: Vector, T: Send>(
     Ok(answers)
 }
 
-/// How many pairs two lists make.
+/// The number of pairs of two lists.
 fn count<V: Vector>(e1: &[Ellipsoid<V>], e2: &[Ellipsoid<V>]) -> Result<usize, InvalidQuery> {
     match (e1.len(), e2.len()) {
         (first, second) if first == second => Ok(first),
@@ -192,7 +192,7 @@ fn count<V: Vector>(e1: &[Ellipsoid<V>], e2: &[Ellipsoid<V>]) -> Result<usize, I
     }
 }
 
-/// Pair number `k` of two lists: a single ellipsoid stands for as many of it as the other list has.
+/// Pair number `k` of two lists: a single ellipsoid is repeated for every element of the other list.
 fn pairs<'a, V: Vector>(
     e1: &'a [Ellipsoid<V>],
     e2: &'a [Ellipsoid<V>],
@@ -200,11 +200,11 @@ fn pairs<'a, V: Vector>(
     move |k| (&e1[if e1.len() == 1 { 0 } else { k }], &e2[if e2.len() == 1 { 0 } else { k }])
 }
 
-/// How many pairs a core takes at a time: whole lanes, so that each pair is solved as it is in one go.
+/// The number of pairs that a core takes at a time: whole lanes, so that each pair is solved as without threads.
 #[cfg(feature = "rayon")]
 const PART: usize = 128 * LANES;
 
-/// Fills the list by parts, on all cores.
+/// Fills the list in parts, on all cores.
 #[cfg(feature = "rayon")]
 fn in_parts<M: Send>(count: usize, list: &mut Vec<M>, fill: impl Fn(Range<usize>, &mut Vec<M>) + Sync) {
     use rayon::prelude::*;
@@ -226,7 +226,7 @@ fn in_parts<M>(count: usize, list: &mut Vec<M>, fill: impl Fn(Range<usize>, &mut
     fill(0..count, list);
 }
 
-/// Fills the column by parts, on all cores; each part is told where it begins.
+/// Fills the column in parts, on all cores; `fill` gets the beginning of each part.
 #[cfg(feature = "rayon")]
 fn by_parts<T: Send>(column: &mut [T], fill: impl Fn(usize, &mut [T]) + Sync) {
     use rayon::prelude::*;
@@ -239,7 +239,7 @@ fn by_parts<T>(column: &mut [T], fill: impl Fn(usize, &mut [T])) {
     fill(0, column);
 }
 
-/// Tells the margins of the pairs of a range, one by one in their order.
+/// Passes on the margins of the pairs of a range, one by one in their order.
 fn each<'a, V: Vector>(
     range: Range<usize>,
     of: impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
@@ -257,12 +257,12 @@ fn each<'a, V: Vector>(
     }
 }
 
-/// Whether the options leave the method and its steps to what the lanes do.
+/// Whether the options allow the method and the number of steps of the lanes.
 fn has_lanes(options: MarginOptions) -> bool {
     options.method == Method::Automatic && options.max_iterations >= STRAIGHT_STEPS
 }
 
-/// The margins of as many of a range as make whole lanes; where it ended.
+/// The margins of a range in whole lanes; returns where they ended.
 fn by_eights<'a, V: Vector, const N: usize>(
     Range { start, end }: Range<usize>,
     of: impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
@@ -356,7 +356,7 @@ struct Answers<const N: usize> {
 impl<const N: usize> Answers<N> {
     const ZERO: Self = Self { is_answer: NONE, nu: NONE, y: [NONE; N], point: [NONE; N], margin: NONE };
 
-    /// The margin of a lane, which holds where `is_answer`.
+    /// The margin of a lane, valid where `is_answer`.
     #[inline(always)]
     fn get<V: Vector>(&self, lane: usize) -> Margin<V> {
         let vector = |v: &[Lane; N]| V::from_fn(|i| V::Scalar::from_f64(v[i][lane]));
@@ -371,7 +371,7 @@ impl<const N: usize> Answers<N> {
     }
 }
 
-/// [`loop_over_lanes`] in the widest vector instructions this processor has, or without the feature `simd` in those of
+/// [`loop_over_lanes`] in the widest vector instructions of this processor, or without the feature `simd` in those of
 /// the target.
 #[inline(never)]
 fn solve_lanes<const N: usize>(pairs: &Pairs<N>, tolerance: f64, answers: &mut Answers<N>) {
@@ -385,8 +385,7 @@ fn solve_lanes<const N: usize>(pairs: &Pairs<N>, tolerance: f64, answers: &mut A
     widest(Lanes(pairs, tolerance, answers));
 }
 
-/// The loop that becomes vector instructions: in a function of its own, so that nothing aliases and nothing else is in
-/// it.
+/// The loop that becomes vector instructions: in a function of its own, so that it has no aliases and no other code.
 #[inline(always)]
 fn loop_over_lanes<const N: usize>(pairs: &Pairs<N>, tolerance: f64, answers: &mut Answers<N>) {
     for lane in 0..LANES {

@@ -103,9 +103,9 @@ pub fn free_margin_with<V: Vector>(
 }
 
 /// The solution by the polynomial, refined if rounding could show in its margin, or by the singular basis if the
-/// polynomial would lose digits; from `start`, 0 for none known.
+/// polynomial would lose digits; from `start`, 0 if unknown.
 ///
-/// The rare ways take the pair by value, so that the pair of the common way can stay in registers.
+/// The rare cases take the pair by value, so that the pair of the usual case can stay in registers.
 #[inline]
 pub(crate) fn solve<const N: usize>(
     pair: &Pair<N>,

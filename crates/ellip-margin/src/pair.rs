@@ -1,4 +1,4 @@
-//! Two ellipsoids as the kernels see them: plain arrays of `f64`, relative to one another.
+//! Two ellipsoids for the kernels: plain arrays of `f64`, relative to one another.
 //!
 //! | paper | here |
 //! |---|---|
@@ -42,7 +42,7 @@ impl<const N: usize> Pair<N> {
         }
     }
 
-    /// The same pair with a power of two for unit of length, near the greatest length in it; and that unit.
+    /// The same pair in a unit of length that is a power of two near its greatest length; and that unit.
     ///
     /// No bit is lost, and squares of lengths are far from the ends of the range.
     #[inline]
@@ -88,7 +88,7 @@ impl<const N: usize> Pair<N> {
         combine(self.axes2, core::array::from_fn(|j| self.a2[j] * y[j]))
     }
 
-    /// ‖c‖² − 1 with the rounding errors kept, for x₁ near the boundary of E₂, where it decides.
+    /// ‖c‖² − 1 with the rounding errors kept, for x₁ near the boundary of E₂, where they decide.
     pub(crate) fn compensated_excess(&self) -> f64 {
         let r: [DoubleDouble; N] = core::array::from_fn(|i| DoubleDouble::sum(self.x1[i], -self.x2[i]));
         let mut excess = DoubleDouble::from(-1.0);
@@ -115,7 +115,7 @@ impl<const N: usize> Pair<N> {
         self.compensated_lagrangian(y, nu).0
     }
 
-    /// The same, and w = By − g, of which what `y` was rounded by is a part.
+    /// The same, and w = By − g, which includes the rounding of `y`.
     #[inline]
     pub(crate) fn compensated_lagrangian(self, y: Vec<N>, nu: f64) -> (f64, Vec<N>) {
         // p = x − x₁ = R₂·diag(a₂)·y − r

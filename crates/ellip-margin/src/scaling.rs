@@ -73,7 +73,7 @@ pub fn scaling<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginO
 fn scaling_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginOptions) -> Scaling<V> {
     let pair = Pair::<N>::new(e1, e2);
     let (c, g) = pair.c_and_g();
-    // α is proportional to r. With centres nearly together squares of c would leave the range.
+    // α is proportional to r. If the centres nearly coincide, squares of c would leave the range.
     let unit_of_r = power_of_two_near(size(c).max(size(g)));
     let (c, g) = (c.map(|x| x / unit_of_r), g.map(|x| x / unit_of_r));
     let least = |a: Vec<N>| a.iter().fold(a[0], |m, x| m.min(*x));

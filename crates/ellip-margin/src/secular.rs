@@ -35,14 +35,14 @@ impl<const N: usize> Solution<N> {
     }
 }
 
-/// `‖c‖² − 1`, compensated where it is small.
+/// `‖c‖² − 1`, compensated if it is small.
 #[inline]
 pub(crate) fn excess<const N: usize>(pair: &Pair<N>, c: Vec<N>) -> f64 {
     let plain = dot(c, c) - 1.0;
     if plain.abs() < 0.25 { pair.compensated_excess() } else { plain }
 }
 
-/// Solves from `nu` (0 for none known), reporting each iterate (ν, φ).
+/// Solves from `nu` (0 if unknown), reporting each iterate (ν, φ).
 #[cold]
 #[inline(never)]
 pub(crate) fn solve<const N: usize>(
@@ -66,8 +66,8 @@ pub(crate) fn solve<const N: usize>(
     let ball: Vec<N> =
         core::array::from_fn(|i| if norm_g < sigma[i] * norm_c { dot(u[i], g) / sigma[i] } else { dot(v[i], c) });
 
-    // Below the root: where one term alone would reach 1; where φ would if all rᵢ were their mean, with the weights of
-    // ĉ² (a step of Newton's method from τ = 0) or of (ĉᵢ/rᵢ)² (a step from infinity).
+    // Below the root: where one term alone would be 1; where φ would be 1 if all rᵢ were their mean, with the weights
+    // of ĉ² (a step of Newton's method from τ = 0) or of (ĉᵢ/rᵢ)² (a step from infinity).
     let squares = ball.map(|x| x * x);
     let mut low = (0..N).fold(0.0f64, |m, i| m.max((ball[i].abs() - 1.0) / ratio[i]));
     let b: Vec<N> = core::array::from_fn(|i| ball[i] / ratio[i]);
@@ -91,7 +91,7 @@ pub(crate) fn solve<const N: usize>(
             slope += square * ratio[i] / denominator;
             above -= square * (tau * ratio[i]) * (1.0 + denominator);
         }
-        // φ² − 1, from the difference that cancels less.
+        // φ² − 1, by the difference that cancels less.
         let above = if excess < 1.0 { above } else { phi2 - 1.0 };
         let phi = phi2.sqrt();
         observer(tau * scale, phi);
@@ -105,8 +105,8 @@ pub(crate) fn solve<const N: usize>(
         }
         tau = next;
         // Newton's method squares the error. From below it rises to the root, and only rounding takes it back: where φ
-        // is flat, no more digits of τ are to be had. (A start far above the root may take two steps back: ε of it is
-        // much.)
+        // is flat, there are no more digits of τ. (A start far above the root may take two steps back, because ε times
+        // it is large.)
         if change * change <= options.tolerance() * (tau * tau) || (rises && step <= 0.0) {
             status = Status::Converged;
             break;
@@ -128,18 +128,18 @@ pub(crate) fn solve<const N: usize>(
 }
 
 /// m = ‖w‖² − 1 for the unit vector y, with w = diag(a₁)⁻¹R₁ᵀ(v − r), v = x* − x₂ = R₂·diag(a₂)y; by the compensated
-/// Lagrangian where rounding could show in that.
+/// Lagrangian if rounding could show in m.
 #[cfg(feature = "paper")]
 #[inline]
 pub(crate) fn margin<const N: usize>(pair: &Pair<N>, y: Vec<N>, nu: f64) -> f64 {
     plain_margin(pair, y).unwrap_or_else(|| pair.compensated_margin(y, nu))
 }
 
-/// ‖w‖² − 1; `None` where rounding could show.
+/// ‖w‖² − 1; `None` if rounding could show.
 ///
-/// Among the points of E₂ the nearest is stationary, so that the rounding errors of y enter squared, and those of ν not
-/// at all. What remains are errors of about ε(‖v‖ + ‖r‖) in the units of space, which E₁'s least semi-axis turns into
-/// errors of w.
+/// The nearest of the points of E₂ is stationary, so that the rounding errors of y enter squared, and those of ν not at
+/// all. There remain errors of about ε(‖v‖ + ‖r‖) in the units of space, which are divided by E₁'s least semi-axis in
+/// w.
 #[inline]
 fn plain_margin<const N: usize>(pair: &Pair<N>, y: Vec<N>) -> Option<f64> {
     let (v, r) = (pair.out_of_ball(y), pair.r());
@@ -153,10 +153,10 @@ fn plain_margin<const N: usize>(pair: &Pair<N>, y: Vec<N>) -> Option<f64> {
     (sure || !squared.is_finite()).then_some(plain)
 }
 
-/// The compensated Lagrangian less what the rounding of y adds to it.
+/// The compensated Lagrangian less the contribution of the rounding of y.
 ///
-/// Where E₁ is thinner than the rounding of E₂'s points, y cannot be told to E₁'s size: `‖B‖²ε²` is no longer little.
-/// But the Lagrangian is quadratic in y, so that with h = Bᵀw + νy, half its gradient, its least value for this ν is
+/// If E₁ is thinner than the rounding of E₂'s points, y is not resolved to E₁'s size: `‖B‖²ε²` is no longer small. But
+/// the Lagrangian is quadratic in y, so that with h = Bᵀw + νy, half its gradient, its least value for this ν is
 ///
 /// > L(y) − hᵀ(C + ν)⁻¹h = L(y) − Σ (σᵢ·(uᵢ·w) + ν·(vᵢ·y))²/(σᵢ² + ν),
 ///

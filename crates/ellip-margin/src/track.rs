@@ -61,7 +61,7 @@ impl MarginTracker {
     /// Stores a step.
     #[inline]
     fn note(&mut self, nu: f64, iterations: usize) {
-        // A step with x₁ in E₂ says nothing about the next one outside.
+        // A step with x₁ in E₂ predicts nothing about the next one outside.
         if nu > 0.0 && nu.is_finite() {
             let mut difference = nu;
             for past in &mut self.past {
@@ -75,7 +75,7 @@ impl MarginTracker {
 
     /// The prediction of the next ν by the polynomial through the last k + 1 values, ν + ∇ν + … + ∇ᵏν, whose error at
     /// the last step was ∇ᵏ⁺¹ν: the k with the least error is taken. If even that was more than a 256th of ν there is
-    /// no path to follow, and the bound that a cold start begins with is the better guess: 0.
+    /// no path to follow, and the bound of a cold start is the better guess: 0.
     fn forecast(&self) -> f64 {
         let (mut sum, mut best, mut least) = (0.0, 0.0, f64::INFINITY);
         for k in 0..DEPTH - 1 {

@@ -33,7 +33,7 @@ pub fn clearance<V: Vector>(
     Ok(ClearanceResult { margin, link, obstacle, pairs_evaluated, left_out: LeftOut::default() })
 }
 
-/// The least of what is found for each link: which core finds what does not matter, since ties go by index.
+/// The least of the results for each link: which core finds which does not matter, because ties go by index.
 #[cfg(feature = "rayon")]
 fn least_of<V: Vector>(
     links: &[Ellipsoid<V>],
@@ -43,7 +43,7 @@ fn least_of<V: Vector>(
     links.par_iter().enumerate().map(of_link).reduce(Least::default, Least::or)
 }
 
-/// The least of what is found for each link.
+/// The least of the results for each link.
 #[cfg(not(feature = "rayon"))]
 fn least_of<V: Vector>(links: &[Ellipsoid<V>], of_link: impl Fn((usize, &Ellipsoid<V>)) -> Least<V>) -> Least<V> {
     links.iter().enumerate().map(of_link).fold(Least::default(), Least::or)

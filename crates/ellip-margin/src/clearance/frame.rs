@@ -1,4 +1,4 @@
-//! Ellipsoids as the search sees them, in either dimension three coordinates, and bounds in the norm of a link.
+//! Ellipsoids in the coordinates of the search, three in either dimension, and bounds in the norm of a link.
 
 use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
 #[cfg(not(feature = "std"))]
@@ -78,12 +78,12 @@ pub(super) fn radius<V: Vector>(e: &Ellipsoid<V>) -> f64 {
     e.semi_axes().max_element().as_f64()
 }
 
-/// The coordinates in three, with zeros in 2D.
+/// Three coordinates, with a zero in 2D.
 pub(super) fn padded<V: Vector>(v: V) -> [f64; 3] {
     core::array::from_fn(|i| if i < V::DIM { v.get(i).as_f64() } else { 0.0 })
 }
 
-/// The columns in three, with zeros in 2D.
+/// Three columns, with zeros in 2D.
 pub(super) fn columns<M: Matrix>(m: M) -> [[f64; 3]; 3] {
     core::array::from_fn(|j| if j < M::Vector::DIM { padded(m.col(j)) } else { [0.0; 3] })
 }
@@ -98,7 +98,7 @@ pub(super) fn around<V: Vector>(e: &Ellipsoid<V>) -> Aabb {
     Aabb { center, half }
 }
 
-/// How far any point of the ellipsoid can have moved: |Δc| + ‖Δ(R·diag(a))‖.
+/// The farthest that any point of the ellipsoid can have moved: |Δc| + ‖Δ(R·diag(a))‖.
 pub(super) fn displacement<V: Vector>(before: &Ellipsoid<V>, now: &Ellipsoid<V>) -> f64 {
     let shift = sub(padded(before.center()), padded(now.center()));
     let (old, new) = (columns(before.axes()), columns(now.axes()));

@@ -1,4 +1,4 @@
-//! The least margin so far, and when a bound shows a pair not to be it.
+//! The least margin so far, and the bounds that exclude a pair.
 
 use convex_support::{Scalar, Vector};
 #[cfg(not(feature = "std"))]
@@ -55,7 +55,7 @@ pub(super) fn scale<V: Vector>(margin: Margin<V>) -> f64 {
 pub(super) struct Limit(pub(super) f64, pub(super) f64);
 
 impl Limit {
-    /// Whether √(1 + m) ≥ `scale` means a greater m, by more than rounding can have done. A negative bound or NaN never
+    /// Whether √(1 + m) ≥ `scale` means a greater m, by more than the largest rounding. A negative bound or NaN never
     /// does.
     #[inline]
     pub(super) fn excludes(self, scale: f64) -> bool {

@@ -55,7 +55,7 @@ pub struct Clearance<V: Vector> {
     /// The greatest semi-axis of each obstacle.
     radii: Vec<f64>,
     tree: Hierarchy,
-    /// How far any point of any obstacle can have moved in all calls of `move_obstacles`.
+    /// The farthest that any point of any obstacle can have moved in all calls of `move_obstacles`.
     drift: f64,
     links: Vec<Seen<V>>,
     /// The pair of the last result.
@@ -118,7 +118,7 @@ impl<V: Vector> Clearance<V> {
         self.links.resize(links.len(), Seen { link: first, scale: 0.0, drift: self.drift, normals: Normals::NONE });
         let mut least = Least::default();
         let mut count = Count::default();
-        // The pair that was nearest is likely to be near still: it is solved first.
+        // The nearest pair of the last step is likely to be near still: it is solved first.
         let seed = self.last.filter(|&(link, _)| link < links.len());
         if let Some((link, obstacle)) = seed {
             least.take(free_margin(&links[link], &self.obstacles[obstacle], self.options), link, obstacle);
@@ -131,7 +131,7 @@ impl<V: Vector> Clearance<V> {
                 count.left_out.by_motion += self.obstacles.len() - usize::from(solved.is_some());
                 continue;
             }
-            // What is solved already is as near as the least at most.
+            // The pairs solved already are as near as the least at most.
             let nearest = solved.map_or(f64::INFINITY, |_| least.scale());
             let mut search = Search { frame: Frame::new(link), least, count, nearest, solved, normals: seen.normals };
             search.run(&self.tree, &self.obstacles, &self.radii, link, index, self.options);

@@ -11,18 +11,18 @@ use crate::hierarchy::{Hierarchy, Node};
 use crate::numerics::dot;
 use crate::{Margin, MarginOptions, free_margin};
 
-/// A link's boxes are searched to this multiple of the least √(1 + m), although farther ones than the least need not
-/// be: the bound so found lets the link be left out for some steps to come.
+/// A link's boxes are searched to this multiple of the least √(1 + m), although only the least is required: with the
+/// bound so found the link can be left out for some steps to come.
 const REACH: f64 = 1.5;
 
-/// How many pairs were solved and left out.
+/// The numbers of pairs solved and left out.
 #[derive(Default)]
 pub(super) struct Count {
     pub(super) solved: usize,
     pub(super) left_out: LeftOut,
 }
 
-/// One link's way through the tree.
+/// The search of the tree for one link.
 pub(super) struct Search<V: Vector> {
     pub(super) frame: Frame,
     pub(super) least: Least<V>,
@@ -44,7 +44,7 @@ impl<V: Vector> Search<V> {
         index: usize,
         options: MarginOptions,
     ) {
-        // Halves are equal: the depth is below 64 for any list that fits a memory, and each level leaves one node.
+        // Halves are equal: the depth is below 64 for any list that fits into memory, and each level leaves one node.
         let mut stack = [(0, 0.0); 64];
         let mut depth = 1;
         stack[0] = (0, self.frame.box_distance(tree.bounds(0)));
@@ -84,11 +84,11 @@ impl<V: Vector> Search<V> {
                 }
             }
         }
-        // Not met again: it was counted with a box that was left out.
+        // It was not reached again: it was counted with a box that was left out.
         self.count.left_out.by_box -= usize::from(self.solved.is_some());
     }
 
-    /// A bound on √(1 + m) that shows the obstacle not to be the least, and what it is due to: the cheapest that does.
+    /// A bound on √(1 + m) that excludes the obstacle, and its reason: the cheapest that does.
     #[inline]
     fn leave_out(&self, obstacle: &Ellipsoid<V>, radius: f64, index: usize) -> Option<(f64, Reason)> {
         let sphere = self.frame.sphere_distance(obstacle, radius);
@@ -116,10 +116,10 @@ fn normal<V: Vector>(obstacle: &Ellipsoid<V>, margin: &Margin<V>) -> [f64; 3] {
     z.map(|x| x / norm)
 }
 
-/// How many normals are kept of each link: the obstacles it is among, not all there are.
+/// The number of normals kept for each link: enough for the obstacles around it, not for all.
 const NORMALS: usize = 8;
 
-/// Obstacles that were solved with a link lately, and the unit normal from the link to each where it was nearest.
+/// Obstacles recently solved with a link, and for each the unit normal from the link where it was nearest.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Normals([Option<(usize, [f64; 3])>; NORMALS]);
 
@@ -130,7 +130,7 @@ impl Normals {
         self.0.iter().flatten().find(|(of, _)| *of == obstacle).map(|(_, normal)| *normal)
     }
 
-    /// Keeps a normal, in the place of the same obstacle's or of the oldest.
+    /// Keeps a normal, in place of the same obstacle's or of the oldest.
     fn keep(&mut self, obstacle: usize, normal: [f64; 3]) {
         let place = self.0.iter().position(|kept| kept.is_none_or(|(of, _)| of == obstacle)).unwrap_or(NORMALS - 1);
         self.0[place] = Some((obstacle, normal));

@@ -1,4 +1,4 @@
-//! A link that has moved little: how near can it be to anything?
+//! A link that has moved little: a bound on its distance from anything.
 
 use convex_support::{Ellipsoid, Scalar, Vector};
 #[cfg(not(feature = "std"))]
@@ -12,9 +12,9 @@ use crate::numerics::{dot, sub};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen<V: Vector> {
     pub(super) link: Ellipsoid<V>,
-    /// √(1 + m) ≥ this for every obstacle, then.
+    /// √(1 + m) was at least this for every obstacle.
     pub(super) scale: f64,
-    /// The drift then.
+    /// The drift at that time.
     pub(super) drift: f64,
     /// The pairs solved last, the newest first.
     pub(super) normals: Normals,
@@ -44,7 +44,7 @@ impl<V: Vector> Seen<V> {
             shift += delta * delta;
             least = a[i].min(least);
         }
-        // Rounding of axes and products, generously.
+        // A generous bound on the rounding of axes and products.
         let aspect = a[..n].iter().fold(0.0f64, |m, x| m.max(*x)) / least;
         let turn = turn.sqrt() + 64.0 * V::Scalar::EPSILON.as_f64() * aspect;
         (1.0 - turn) * self.scale - shift.sqrt() * (1.0 + 1e-12) - (drift - self.drift) / least * (1.0 + 1e-12)

@@ -50,7 +50,7 @@ impl Quantity {
     pub(super) const SCALE: Self = Self { objective: [0.0; 3], constraint: [0.0, 1.0, 1.0] };
 }
 
-/// Which of the two moves.
+/// The body that moves.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Mover {
     First,
@@ -65,7 +65,7 @@ impl Mover {
         }
     }
 
-    /// Its place among ‖N‖, h₁, h₂.
+    /// Its index among ‖N‖, h₁, h₂.
     fn index(self) -> usize {
         match self {
             Self::First => 1,
@@ -74,7 +74,7 @@ impl Mover {
     }
 }
 
-/// The stationary normal, with all that the derivatives need.
+/// The stationary normal, with all quantities that the derivatives need.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact<const N: usize> {
     quantity: Quantity,
@@ -99,7 +99,7 @@ pub(super) struct Units {
     pub(super) length: f64,
 }
 
-/// The unit of a Hessian and what it is of: slope·s + ½·curvature·s², s the value of a contact less what it is.
+/// The unit of a Hessian and its function: slope·s + ½·curvature·s², s the change of the value of a contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Form {
     pub(super) slope: f64,
@@ -107,7 +107,7 @@ pub(super) struct Form {
     pub(super) units: Units,
 }
 
-/// What each coordinate of a pose changes, translations first; as many as a pose has, 3 in 2D.
+/// The changes by each coordinate of a pose, translations first; as many as a pose has, 3 in 2D.
 #[derive(Clone, Copy, Debug)]
 struct Rates {
     /// s.
@@ -119,15 +119,15 @@ struct Rates {
 }
 
 impl<const N: usize> Contact<N> {
-    /// At the normal along `direction`, from E₁ to E₂; `None` where that is not a direction.
+    /// At the normal along `direction`, from E₁ to E₂; `None` if that is not a direction.
     pub(super) fn new(pair: &Pair<N>, quantity: Quantity, direction: Vec<N>) -> Option<Self> {
         let e = heights(pair, direction).map(unit);
         Self::at_points(pair, quantity, direction, e, None)
     }
 
-    /// The same where the points that touch, as unit vectors e of the two balls, are known better than from
-    /// `direction`: turned into the axes of a needle it has lost the digits of its small coordinates. So may be the
-    /// value, of which next to nothing is left of N·r near the floor of the margin.
+    /// The same if the points that touch, as unit vectors e of the two balls, are more accurate than from `direction`:
+    /// turned into the axes of a needle it has lost the digits of its small coordinates. The same may hold for the
+    /// value: near the floor of the margin N·r cancels almost entirely.
     pub(super) fn at_points(
         pair: &Pair<N>,
         quantity: Quantity,
@@ -154,7 +154,7 @@ impl<const N: usize> Contact<N> {
     }
 
     /// One step of Newton's method for N. An answer's value is stationary in N and may have been found with half its
-    /// digits. Kept if it brings L nearer to being stationary: else what was left was rounding.
+    /// digits. The step is kept if it brings L nearer to being stationary: otherwise only rounding was left.
     pub(super) fn refined(self, pair: &Pair<N>) -> Self {
         let [x, y] = self.solved(self.whitened(self.residual()));
         let step: Vec<N> = core::array::from_fn(|i| x * self.tangents[0][i] + y * self.tangents[1][i]);
@@ -180,7 +180,7 @@ impl<const N: usize> Contact<N> {
         self.tangents.map(|tangent| dot(tangent, x))
     }
 
-    /// R⁻ᵀx of a vector of the tangent plane.
+    /// R⁻ᵀx for a vector of the tangent plane.
     #[inline]
     fn whitened(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [r11, r12, r22] = self.root;
@@ -195,8 +195,8 @@ impl<const N: usize> Contact<N> {
         [(x[0] - r12 * second) / r11, second]
     }
 
-    /// ∂s/∂δ in world axes, and ∂s/∂ω of the plane eᵢ∧eⱼ as kh·eᵢeⱼ(…): the factor −kh and e, which the torque is made
-    /// of.
+    /// ∂s/∂δ in world axes, and ∂s/∂ω for the plane eᵢ∧eⱼ as kh·eᵢeⱼ(…): the factor −kh and e, from which the torque is
+    /// made.
     pub(super) fn gradient(&self, mover: Mover) -> (Vec<N>, Vec<N>, f64) {
         let (side, k, sign) = self.of(mover);
         (self.normal.map(|x| -sign * x), side.e, -k * side.h)
@@ -207,13 +207,13 @@ impl<const N: usize> Contact<N> {
     pub(super) fn hessian(&self, mover: Mover, form: Form) -> [[f64; 6]; 6] {
         let (rotations, is_seen) = (N * (N - 1) / 2, self.is_stiffer(mover));
         let (side, k, sign) = self.of(mover);
-        // The body with which L_ωω is written, and the sense in which it turns: the other one, backwards, where N is as
+        // The body whose rotation gives L_ωω, and the sense in which it turns: the other one, backwards, if N is as
         // seen by the body that moves.
         let written = if is_seen { mover.other() } else { mover };
         let (other, other_k, _) = self.of(written);
         let turns = other.turns();
         let (sense, values) = if is_seen { (-1.0, side.twists()) } else { (1.0, turns.t) };
-        // What N sees of the constraint and of v.
+        // ∇γ and v on the tangent plane.
         let [_, g1, g2] = self.quantity.constraint;
         let [first, second] = self.sides.each_ref().map(Side::reach);
         let gauge: [f64; 2] = core::array::from_fn(|c| g1 * first[c] + g2 * second[c]);
@@ -251,7 +251,7 @@ impl<const N: usize> Contact<N> {
         hessian
     }
 
-    /// Adds `size` times what L_ωω and L_δω have besides where N is as seen by the body that moves: with (ω × N)·(φ ×
+    /// Adds `size` times the further terms of L_ωω and L_δω if N is as seen by the body that moves: with (ω × N)·(φ ×
     /// r) = (ω·φ)(N·r) − (ω·r)(φ·N), in the plane N·r, and `sign` in the unit of length.
     fn add_seen(&self, hessian: &mut [[f64; 6]; 6], size: f64, sign: f64) {
         let (n, r, along) = (&self.normal, &self.r, dot(self.normal, self.r));
@@ -269,9 +269,9 @@ impl<const N: usize> Contact<N> {
         }
     }
 
-    /// Whether N is to be taken as seen by the body that moves, since the terms are smaller then: L_ωω of the body that
-    /// moves is about k·(a_max² − a_min²)‖N‖²/h, and what takes its place is that of the other and ‖N‖‖r‖, which is
-    /// much where the bodies are far apart.
+    /// Whether N is taken as seen by the body that moves, because the terms are then smaller: L_ωω of the body that
+    /// moves is about k·(a_max² − a_min²)‖N‖²/h. In its place are that of the other one and ‖N‖‖r‖, which is large if
+    /// the bodies are far apart.
     fn is_stiffer(&self, mover: Mover) -> bool {
         let stiffness = |mover: Mover| {
             let (side, k, _) = self.of(mover);
@@ -298,14 +298,14 @@ impl Rates {
         (self.whitened[0][i], self.whitened[1][i]) = (x, y);
     }
 
-    /// All but L_θφ: slope·(q_θ·A⁻¹q_φ − s_θγ_φ − s_φγ_θ) + curvature·s_θs_φ, which is w_θ·w_φ − (s_θg_φ + s_φg_θ) with
-    /// w = √slope·R⁻ᵀq and g = slope·γ − ½·curvature·s. Units are put into the factors, of which there are fewer than
-    /// entries.
+    /// All terms but L_θφ: slope·(q_θ·A⁻¹q_φ − s_θγ_φ − s_φγ_θ) + curvature·s_θs_φ, which is w_θ·w_φ − (s_θg_φ +
+    /// s_φg_θ) with w = √slope·R⁻ᵀq and g = slope·γ − ½·curvature·s. Units are put into the factors, which are fewer
+    /// than the entries.
     #[inline]
     fn hessian(mut self, dimension: usize, Form { slope, curvature, units }: Form) -> [[f64; 6]; 6] {
         // The unit of length is a power of two.
         let inverse = 1.0 / units.length;
-        // And so may that of the value be, whose root would have other digits: of the slope alone it is taken.
+        // The unit of the value may be one too, but its root has other digits: only that of the slope is taken.
         let root = slope.sqrt();
         let (slope, curvature) = (slope * units.value, 0.5 * (curvature * units.value));
         let mut offset = [0.0; 6];

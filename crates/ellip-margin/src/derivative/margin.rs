@@ -83,7 +83,7 @@ impl<V: Vector> Answer<'_, V, Margin<V>> {
     }
 }
 
-/// β = diag(a₁)⁻¹R₁ᵀ(x* − x₁), x* − x₁ as E₁ sees it, and z = Q(x* − x₂).
+/// β = diag(a₁)⁻¹R₁ᵀ(x* − x₁), x* − x₁ in the frame of E₁, and z = Q(x* − x₂).
 #[inline]
 pub(super) fn beta_and_z<V: Vector, const N: usize>(
     m: &Margin<V>,

@@ -1,8 +1,8 @@
-//! A body as the normal N sees it, and what its rotations change with N held: t, m and b of [`super::contact`].
+//! A body in terms of the normal N, and the changes by its rotations with N held: t, m and b of [`super::contact`].
 
 use crate::numerics::{Vec, dot};
 
-/// What the unit rotations of a body about the axes of the world change with N held; in 2D the first is the only one.
+/// The changes by unit rotations of a body about the axes of the world with N held; in 2D the first is the only one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turns {
     /// t.
@@ -13,7 +13,7 @@ pub(super) struct Turns {
     pub(super) second: [[f64; 3]; 3],
 }
 
-/// One body as N sees it.
+/// One body in terms of N.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side<const N: usize> {
     pub(super) axes: [Vec<N>; N],
@@ -35,8 +35,8 @@ impl<const N: usize> Side<N> {
         self.tangents.map(|tangent| dot(tangent, point))
     }
 
-    /// The planes i, j of the body's axes, in space those across axis 0, 1 and 2, and what the unit rotations about the
-    /// axes of the world are in them: Wᵢⱼ of W = Rᵀ[ω]R.
+    /// The planes i, j of the body's axes, in space those across axis 0, 1 and 2, and the unit rotations about the axes
+    /// of the world in them: Wᵢⱼ of W = Rᵀ[ω]R.
     #[inline]
     fn planes(&self) -> [(usize, usize, [f64; 3]); 3] {
         let mut planes = [(0, 1, [0.0; 3]); 3];
@@ -53,8 +53,8 @@ impl<const N: usize> Side<N> {
     ///
     /// > t = −D(eᵢ/aᵢ)(eⱼ/aⱼ), b = D(eⱼ/aⱼ, eᵢ/aᵢ), m = (nⱼ, −nᵢ),
     ///
-    /// so that m·b = D(nⱼ² − nᵢ²)/h, and of the planes across the axes k and l = k + 1, which have one axis in common,
-    /// ½(m_k·b_l + m_l·b_k) = ½(D_k − D_l)n_kn_l/h. What is about the axes of the world are sums of these by Wᵢⱼ.
+    /// so that m·b = D(nⱼ² − nᵢ²)/h, and for the planes across the axes k and l = k + 1, which have one axis in common,
+    /// ½(m_k·b_l + m_l·b_k) = ½(D_k − D_l)n_kn_l/h. Changes about the axes of the world are sums of these by Wᵢⱼ.
     #[inline]
     pub(super) fn turns(&self) -> Turns {
         let (planes, rotations) = (self.planes(), N * (N - 1) / 2);
@@ -101,7 +101,7 @@ impl<const N: usize> Side<N> {
         turns
     }
 
-    /// t of the unit rotations about the world axes, in 2D the only one.
+    /// t for the unit rotations about the world axes, in 2D the only one.
     #[inline]
     pub(super) fn twists(&self) -> [f64; 3] {
         let Self { a, e, .. } = self;

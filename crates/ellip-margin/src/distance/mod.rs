@@ -128,7 +128,7 @@ pub fn distance<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: Margin
 
 fn distance_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginOptions) -> Distance<V> {
     let (pair, length) = Pair::<N>::new(e1, e2).in_own_unit();
-    // A slab that separates the bodies settles that they are disjoint, however its normal was found.
+    // A slab that separates the bodies proves them disjoint, however its normal was found.
     let rough = polynomial::rough(&pair).and_then(|y| Slab::across(&pair, y)).filter(|slab| slab.is_wide(&pair));
     let mut slab = match rough {
         Some(slab) => slab,
@@ -144,7 +144,7 @@ fn distance_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, 
     let (mut status, mut iterations) = (Status::IterationLimit, 0);
     if slab.width > 0.0 && slab.tangent_squared() > 2.0 * options.tolerance() {
         let beta = slab.h.map(|h| h * slab.width);
-        // An eighth of the steps is left for the slab to close by itself, should this end before it is at rest.
+        // An eighth of the steps is left for the slab to close by itself, if this iteration ends before it converges.
         let most = options.max_iterations - options.max_iterations / 8;
         if let Some((d, steps)) = multipliers::closest(&pair, beta, most) {
             iterations += steps;

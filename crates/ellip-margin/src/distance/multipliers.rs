@@ -25,7 +25,7 @@ use num_traits::Float as _;
 use crate::numerics::{Factor, Vec, combine, dot};
 use crate::pair::Pair;
 
-/// The largest change of ln β in a step: beyond it the linear model says little.
+/// The largest change of ln β in a step: beyond it the linear model is poor.
 const TRUST: f64 = 2.0;
 
 /// The steps in ln β before those on Φ.
@@ -35,8 +35,8 @@ const SWIFT: usize = 12;
 /// residual's square, and the slab across d closes with the square of that.
 const SMALL: f64 = 1e-4;
 
-/// d up to a factor, from a first guess of its direction and length, and the number of steps it took; `None` where the
-/// numbers leave the range.
+/// d up to a factor, from a first guess of its direction and length, and the number of steps; `None` if numbers leave
+/// the range.
 pub(super) fn closest<const N: usize>(
     pair: &Pair<N>,
     mut beta: [f64; 2],

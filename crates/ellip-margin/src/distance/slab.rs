@@ -25,8 +25,8 @@ use crate::pair::Pair;
 use crate::secular::Solution;
 use crate::{MarginOptions, Status};
 
-/// Whether bodies whose margin is not positive have a common point: an iteration that was cut short has found less than
-/// their margin. Then E₂'s point along y has to lie in E₁.
+/// Whether bodies whose margin is not positive certainly have a common point: an iteration that was cut short finds
+/// less than the margin. Then E₂'s point along y has to lie in E₁.
 fn is_proved<const N: usize>(pair: &Pair<N>, solution: &Solution<N>, options: MarginOptions) -> bool {
     if solution.status == Status::Converged && options.tolerance() <= MarginOptions::new().tolerance() {
         return true;
@@ -37,7 +37,7 @@ fn is_proved<const N: usize>(pair: &Pair<N>, solution: &Solution<N>, options: Ma
     is_inside || dot(w, w) <= 1.0
 }
 
-/// A direction with what the two bodies say to it.
+/// A direction with the support values and points of the two bodies.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slab<const N: usize> {
     /// The unit direction from E₁ to E₂.
@@ -54,8 +54,8 @@ pub(super) struct Slab<const N: usize> {
 }
 
 impl<const N: usize> Slab<N> {
-    /// The slab across the margin's normal, across the line of centres where the margin has none; `None` where the
-    /// bodies overlap.
+    /// The slab across the margin's normal, or across the line of centres if the margin has none; `None` if the bodies
+    /// overlap.
     pub(super) fn of_margin(pair: &Pair<N>, solution: &Solution<N>, options: MarginOptions) -> Option<Self> {
         if solution.margin <= 0.0 && is_proved(pair, solution, options) {
             return None;
@@ -66,7 +66,7 @@ impl<const N: usize> Slab<N> {
         })
     }
 
-    /// The slab whose normal is that of E₂ at its point y of the ball; `None` where that is not a number.
+    /// The slab whose normal is that of E₂ at its point y of the ball; `None` if that is NaN.
     pub(super) fn across(pair: &Pair<N>, y: Vec<N>) -> Option<Self> {
         // −z = −Q(x* − x₂) points from E₁ to E₂.
         let n = unit(combine(pair.axes2, core::array::from_fn(|j| -y[j] / pair.a2[j])));
@@ -77,7 +77,7 @@ impl<const N: usize> Slab<N> {
         let side = |axes: &[Vec<N>; N], a: &Vec<N>, sign: f64| {
             let u: Vec<N> = core::array::from_fn(|k| a[k] * dot(axes[k], n));
             let h = dot(u, u).sqrt();
-            // A body so small beside the other that its square is below the range is a point.
+            // If a body is so small against the other that its square underflows, it counts as a point.
             let inverse = if h > 0.0 { sign / h } else { 0.0 };
             (u, h, combine(*axes, core::array::from_fn(|k| a[k] * (u[k] * inverse))))
         };
@@ -93,7 +93,7 @@ impl<const N: usize> Slab<N> {
         dot(self.across, self.across).sqrt()
     }
 
-    /// θ²: the squared tangent of the angle between n and p₂ − p₁; infinite where they do not agree at all.
+    /// θ²: the squared tangent of the angle between n and p₂ − p₁; infinite if it is not below a right angle.
     pub(super) fn tangent_squared(&self) -> f64 {
         if self.width > 0.0 {
             let t: Vec<N> = core::array::from_fn(|i| (self.across[i] - self.width * self.n[i]) / self.width);
@@ -103,10 +103,10 @@ impl<const N: usize> Slab<N> {
         }
     }
 
-    /// A wider slab; `None` where none is found.
+    /// A wider slab; `None` if none is found.
     pub(super) fn ascend(&self, pair: &Pair<N>) -> Option<Self> {
-        // Newton's step, if it does a quarter of what it foresees, or brings p₂ − p₁ nearer to n where that is too
-        // little for the width to show.
+        // Newton's step, if it gains a quarter of its prediction, or brings p₂ − p₁ nearer to n although the gain is
+        // too small to show in the width.
         let tangent = sub(self.across, self.n.map(|x| x * self.width));
         let step = Factor::new(self.curvature(pair, true)).solve(tangent);
         let next = Self::new(pair, unit(add(self.n, step)));
@@ -151,7 +151,7 @@ impl<const N: usize> Slab<N> {
         matrix
     }
 
-    /// What rounding may do to `width`: the products with the axes have errors of ε times the bodies' extents.
+    /// A bound on the rounding of `width`: the products with the axes have errors of ε times the bodies' extents.
     fn rounding(&self, pair: &Pair<N>) -> f64 {
         let r = pair.r();
         let extent = pair.a1.iter().chain(&pair.a2).fold(dot(r, r).sqrt(), |m, a| m.max(*a));
@@ -163,7 +163,7 @@ impl<const N: usize> Slab<N> {
         self.rounding(pair) <= 2.5e-13 * self.width
     }
 
-    /// f(n) with the rounding errors kept where they would show.
+    /// f(n) with the rounding errors kept if they would show.
     pub(super) fn exact_width(&self, pair: &Pair<N>) -> f64 {
         if self.is_wide(pair) { self.width } else { self.compensated_width(pair) }
     }

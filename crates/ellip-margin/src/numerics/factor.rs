@@ -2,7 +2,7 @@
 
 use super::Vec;
 
-/// L·diag(D)·Lᵀ of a symmetric positive definite matrix, of which the lower triangle is read.
+/// L·diag(D)·Lᵀ of a symmetric positive definite matrix, given by its lower triangle.
 pub(crate) struct Factor<const N: usize> {
     l: [Vec<N>; N],
     /// 1/D.

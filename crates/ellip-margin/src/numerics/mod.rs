@@ -1,5 +1,5 @@
-//! What the formulas stand on: vectors and small matrices of `f64`, their factorisations, twofold arithmetic, and the
-//! unit of length in which nothing leaves the range.
+//! The basis of the formulas: vectors and small matrices of `f64`, their factorisations, twofold arithmetic, and the
+//! unit of length in which no number leaves the range.
 
 mod double_double;
 mod factor;

@@ -92,8 +92,8 @@ pub(crate) fn svd<const N: usize>(b: [Vec<N>; N]) -> Svd<N> {
     }
 }
 
-/// Rotates rows `i` and `j` of `a` within their plane until they are orthogonal, and those of `turn` alike; says
-/// whether it had to.
+/// Rotates rows `i` and `j` of `a` within their plane until they are orthogonal, and those of `turn` alike. Returns
+/// whether they were not.
 fn orthogonalise<const N: usize>(a: &mut [Vec<N>; N], turn: &mut [Vec<N>; N], i: usize, j: usize) -> bool {
     let (p, q, pq) = (dot(a[i], a[i]), dot(a[j], a[j]), dot(a[i], a[j]));
     if pq.is_nan() || pq.abs() <= f64::EPSILON * (p.sqrt() * q.sqrt()) {

@@ -1,9 +1,8 @@
-//! A unit of length in which nothing leaves the range.
+//! A unit of length in which no number leaves the range.
 
 /// The greatest power of two that is at most `size`, or the nearest to it whose inverse is a normal number.
 ///
-/// Lengths divided by it keep all their bits, so that what is computed from them does not depend on the unit they were
-/// in.
+/// Lengths divided by it keep all their bits, so that results computed from them do not depend on the original unit.
 #[inline]
 pub(crate) fn power_of_two_near(size: f64) -> f64 {
     const BIAS: u64 = 1023;

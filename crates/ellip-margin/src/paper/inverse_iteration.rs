@@ -133,7 +133,7 @@ impl InverseIterationTracker {
         solution
     }
 
-    /// Whether the point of E₂ with the coordinates `y` in its ball is that nearest to x₁ in the norm of E₁, to the
+    /// Whether the point of E₂ with the coordinates `y` in its ball is the nearest to x₁ in the norm of E₁, to the
     /// tolerance.
     ///
     /// With w = x − x₁, β = diag(a₁)⁻¹R₁ᵀw and the normal N = −R₁·diag(a₁)⁻¹β towards x₁, h₁(N) = ‖β‖. Since all of E₂
@@ -149,8 +149,8 @@ impl InverseIterationTracker {
         above - below <= self.tolerance * below.min((below - 1.0).abs())
     }
 
-    /// Inverse iteration from the unit vector `x` with the shift λ̂; the minimal eigenvalue with its vector, if that is
-    /// where it ends, and the number of iterations.
+    /// Inverse iteration from the unit vector `x` with the shift λ̂; the minimal eigenvalue with its vector, if it ends
+    /// there, and the number of iterations.
     fn iterate<const N: usize>(
         &self,
         c: [Vec<N>; N],
@@ -161,7 +161,7 @@ impl InverseIterationTracker {
         let g = inverse(shifted(c, shift));
         let gb = times(g, b);
         let ggb = times(g, gb);
-        // 1 − bᵀG²b vanishes where the shift is λ* itself: any tiny number then gives its eigenvector.
+        // If the shift is λ* itself, 1 − bᵀG²b vanishes: any tiny number then gives its eigenvector.
         let pole = 1.0 - dot(b, ggb);
         let pole = if pole == 0.0 { f64::EPSILON } else { pole };
         for iteration in 1..=self.max_iterations {
@@ -177,7 +177,7 @@ impl InverseIterationTracker {
             x = next;
             if dot(change[0], change[0]) + dot(change[1], change[1]) <= self.tolerance * self.tolerance {
                 let lambda = shift + 1.0 / mu;
-                // Theorem 3: it alone is negative.
+                // Theorem 3: only the minimal eigenvalue is negative.
                 return ((lambda < 0.0 && lambda.is_finite()).then_some((lambda, x)), iteration);
             }
         }
@@ -196,7 +196,7 @@ fn times<const N: usize>(a: [Vec<N>; N], x: Vec<N>) -> Vec<N> {
     a.map(|row| dot(row, x))
 }
 
-/// The inverse of a small matrix by its cofactors, as the paper's closed form has it.
+/// The inverse of a small matrix by its cofactors, as in the paper's closed form.
 fn inverse<const N: usize>(a: [Vec<N>; N]) -> [Vec<N>; N] {
     let cofactor = |i: usize, j: usize| {
         if N == 2 {
@@ -210,7 +210,7 @@ fn inverse<const N: usize>(a: [Vec<N>; N]) -> [Vec<N>; N] {
     core::array::from_fn(|i| core::array::from_fn(|j| cofactor(j, i) / determinant))
 }
 
-/// The first coordinates of a block, kept in three for either dimension.
+/// The first coordinates of a block, which has three in either dimension.
 fn shrink<const N: usize>(v: Vec<3>) -> Vec<N> {
     core::array::from_fn(|i| v[i])
 }

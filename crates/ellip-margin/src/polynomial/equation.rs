@@ -81,7 +81,7 @@ impl Taylor {
         (32.0 * (f0 * f2).abs() < f1 * f1) & (16.0 * f0.abs() < nu * f1)
     }
 
-    /// δ, and about what it lacks.
+    /// δ, and an estimate of its error.
     #[inline(always)]
     pub(super) fn series(&self) -> (f64, f64) {
         let [f0, f1, f2, f3] = self.difference();

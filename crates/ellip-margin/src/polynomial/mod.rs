@@ -26,12 +26,12 @@ use crate::{MarginOptions, Status};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Quick<const N: usize> {
     pub(crate) solution: Solution<N>,
-    /// Else the margin wants [`Pair::compensated_margin`].
+    /// Otherwise the margin needs [`Pair::compensated_margin`].
     pub(crate) is_sure: bool,
 }
 
-/// Solves from `start` (0 for none known), reporting each iterate (ν, φ); `None` where digits would be lost or x₁ is
-/// near the boundary of E₂.
+/// Solves from `start` (0 if unknown), reporting each iterate (ν, φ); `None` if digits would be lost or x₁ is near the
+/// boundary of E₂.
 #[inline]
 pub(crate) fn solve<const N: usize>(
     pair: &Pair<N>,
@@ -73,7 +73,7 @@ pub(crate) fn solve<const N: usize>(
 pub(crate) fn solve_straight<const N: usize>(pair: &Pair<N>, tolerance: f64) -> Straight<N> {
     let problem = Problem::new(pair);
     let mut nu = problem.start();
-    // Not in a loop: the loop that is to be vectorised is around this.
+    // Not in a loop: the loop to be vectorised is around this code.
     nu = (nu + problem.equation.at(nu).hebden()).max(0.0);
     nu = (nu + problem.equation.at(nu).hebden()).max(0.0);
     nu = (nu + problem.equation.at(nu).hebden()).max(0.0);
@@ -90,18 +90,18 @@ pub(crate) fn solve_straight<const N: usize>(pair: &Pair<N>, tolerance: f64) -> 
 /// The steps [`solve_straight`] takes.
 pub(crate) const STRAIGHT_STEPS: usize = 5;
 
-/// An answer among those found side by side; all of one type, as vector instructions want it.
+/// An answer among those found side by side; all of one type, as vector instructions need it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Straight<const N: usize> {
-    /// 1, or 0 where [`solve`] and its fallbacks have to be asked instead.
+    /// 1, or 0 if [`solve`] and its fallbacks have to be asked instead.
     pub(crate) is_answer: f64,
     pub(crate) nu: f64,
     pub(crate) y: Vec<N>,
     pub(crate) margin: f64,
 }
 
-/// About the nearest point of E₂, as a point of its ball, at any aspect: to a few digits, or to none, which whoever
-/// takes it has to find out. `None` where x₁ lies in E₂ or near its boundary.
+/// Roughly the nearest point of E₂, as a point of its ball, at any aspect: to a few digits or to none, which the caller
+/// has to find out. `None` if x₁ lies in E₂ or near its boundary.
 #[inline]
 pub(crate) fn rough<const N: usize>(pair: &Pair<N>) -> Option<Vec<N>> {
     let problem = Problem::new(pair);

@@ -8,18 +8,18 @@ use crate::numerics::{Vec, dot, size};
 use crate::pair::Pair;
 
 /// The largest factor by which a sum of the coefficients may cancel: the relative errors of ν and y are at most this
-/// times a few ε, some 1e-12. Beyond it the singular basis is worth its price.
+/// times a few ε, some 1e-12. Beyond it the singular basis is worth its cost.
 const MAX_LOSS: f64 = 2048.0;
 
 /// Sizes of ‖B‖² up to which sixth powers stay far from the range of `f64`.
 const MAX_SIZE: f64 = 1e20;
 
-/// The equation of a pair, and what its solution is turned into an answer with.
+/// The equation of a pair, and the data for the answer from its solution.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Problem<const N: usize> {
-    /// x₁ lies in E₂, by far.
+    /// Whether x₁ lies in E₂, by far.
     pub(super) inside: bool,
-    /// No digits are lost, and x₁ lies outside E₂ by far.
+    /// Whether no digits are lost, and x₁ lies outside E₂ by far.
     pub(super) fits: bool,
     pub(super) equation: Equation<N>,
     /// p(ν) = `low` + ν·`middle` + ν²b, or in the plane `low` + νb.
@@ -39,7 +39,7 @@ pub(super) struct Problem<const N: usize> {
 }
 
 impl<const N: usize> Problem<N> {
-    /// Straight through: no branch depends on the numbers, so that several pairs can be set up side by side.
+    /// No branch depends on the numbers, so that several pairs can be set up side by side.
     #[inline(always)]
     pub(super) fn new(pair: &Pair<N>) -> Self {
         let r = pair.r();
@@ -117,11 +117,11 @@ impl<const N: usize> Problem<N> {
         // w = By − g, with Bp found beside the division.
         let bp = apply(&self.rows, p);
         let w: Vec<N> = core::array::from_fn(|i| bp[i] * inverse - self.g[i]);
-        // The Lagrangian ‖w‖² − 1 + ν(‖y‖² − 1) is stationary in y: what y has of errors enters squared.
+        // The Lagrangian ‖w‖² − 1 + ν(‖y‖² − 1) is stationary in y: errors of y enter squared.
         let squared = dot(w, w);
         let margin = (squared - 1.0) + nu * (dot(y, y) - 1.0);
-        // An error of x* − x₁ in space of ε(‖v‖ + ‖r‖) changes m by its product with ∂m/∂x₁ = 2R₁·diag(a₁)⁻¹w: not by
-        // 64ε·m? Lengths times their inverses, never squared: at any scale the answer is the same.
+        // Whether the error ε(‖v‖ + ‖r‖) of x* − x₁ in space, times ∂m/∂x₁ = 2R₁·diag(a₁)⁻¹w, is below 128ε·m. Lengths
+        // times their inverses, never squared: the answer is the same at any scale.
         let v: Vec<N> = core::array::from_fn(|j| pair.a2[j] * y[j]);
         let pw: Vec<N> = core::array::from_fn(|i| self.i1[i] * w[i]);
         let is_sure = (size(v) + size(self.r)) * size(pw) < 64.0 * margin.abs();
@@ -130,14 +130,14 @@ impl<const N: usize> Problem<N> {
     }
 }
 
-/// What a root is turned into.
+/// The answer for a root.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest<const N: usize> {
     pub(super) y: Vec<N>,
     pub(super) margin: f64,
-    /// Rounding cannot show in the margin.
+    /// Whether rounding cannot show in the margin.
     pub(super) is_sure: bool,
-    /// The errors of y cannot.
+    /// Whether the errors of y cannot show in it.
     pub(super) is_sharp: bool,
 }
 
