@@ -232,7 +232,9 @@ macro_rules! vector {
 }
 
 vector!(Vec3 by Mat3, Quat, 0.6, |v: Vec3| v.as_dvec3(), |v: DVec3| v.as_vec3(), |m: DMat3| m.as_mat3());
-vector!(Vec3A by Mat3A, Quat, 0.6, |v: Vec3A| v.as_dvec3(), |v: DVec3| v.as_vec3a(), |m: DMat3| Mat3A::from(m.as_mat3()));
+vector!(
+    Vec3A by Mat3A, Quat, 0.6, |v: Vec3A| v.as_dvec3(), |v: DVec3| v.as_vec3a(), |m: DMat3| Mat3A::from(m.as_mat3())
+);
 vector!(DVec3 by DMat3, DQuat, 10.0, |v| v, |v| v, |m| m);
 
 /// A rotation about an axis in space.
@@ -314,7 +316,7 @@ fn sin_cos_of_sum([angle, rest]: [f64; 2]) -> [f64; 2] {
         return [f64::NAN; 2];
     }
     let (sin, cos) = sin_cos(angle);
-    // 1 − cos(rest) is below rounding where the angle is below 2²⁶, as most are.
+    // If the angle is below 2²⁶, as most are, 1 − cos(rest) is below rounding.
     let (s, c) = if rest.abs() < 7e-9 { (rest, 1.0) } else { sin_cos(rest) };
     [sin * c + cos * s, cos * c - sin * s]
 }

@@ -163,7 +163,7 @@ mod tests {
         for s in [1e-320, 1e-300, 1e-200, 1e-160, 1e-10, 1.0, 1e10, 1e160, 1e300] {
             let u = Vector::unit(DVec3::new(3.0, -4.0, 12.0) * s).expect("not zero");
             let error = (u - DVec3::new(3.0, -4.0, 12.0) / 13.0).length();
-            // 1e-320 is subnormal: the vector itself carries only three digits there.
+            // The vector itself has only three digits at 1e-320, which is subnormal.
             assert!(error < if s == 1e-320 { 1e-2 } else { 1e-15 }, "{s}: {u}");
         }
         for s in [1e-40, 1e-20, 1.0, 1e20, 1e37] {

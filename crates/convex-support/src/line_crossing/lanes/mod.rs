@@ -32,7 +32,7 @@ pub struct Lines<S> {
     pub direction: [Lane<S>; 3],
     /// The answer must hold for every line that passes within this distance of the line near the shape.
     pub error: Lane<S>,
-    /// 1 if the line enters the shape, −1 if it misses it, 0 if it has to be asked alone.
+    /// The answer: 1 if the line enters the shape, −1 if it misses it, 0 if it has to be asked alone.
     pub known: Lane<S>,
     /// The parameter where the line enters.
     pub entry: Lane<S>,
