@@ -77,7 +77,7 @@ pub(super) fn closest<const N: usize>(
             beta[k] *= match (is_step, swift) {
                 (false, _) => squared_ratio[k].sqrt(),
                 (true, true) => exp(newton[k].clamp(-TRUST, TRUST)),
-                // 1 + x to first order, and positive.
+                // Equal to 1 + x to first order, and positive.
                 (true, false) if newton[k] < 0.0 => 1.0 / (1.0 - newton[k]),
                 (true, false) => 1.0 + newton[k],
             };

@@ -93,7 +93,7 @@ pub(crate) const STRAIGHT_STEPS: usize = 5;
 /// An answer among those found side by side; all of one type, as vector instructions need it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Straight<const N: usize> {
-    /// 1, or 0 if [`solve`] and its fallbacks have to be asked instead.
+    /// Whether it is one: 1, or 0 if [`solve`] and its fallbacks have to be asked instead.
     pub(crate) is_answer: f64,
     pub(crate) nu: f64,
     pub(crate) y: Vec<N>,

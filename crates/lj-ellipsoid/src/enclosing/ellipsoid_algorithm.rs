@@ -1,9 +1,9 @@
 //! The ellipsoid algorithm on the lifted problem, after Rimon and Boyd, corrected.
 //!
-//! The problem has n = N + 1 dimensions, with qᵢ = (yᵢ; 1): minimise f(X) = −ln det X over symmetric X ≻ 0 with qᵢᵀXqᵢ
-//! ≤ 1. The slice of the optimal { q : qᵀXq ≤ 1 } at height one is the enclosing ellipsoid (their Lemma B.1). X has D =
-//! n(n + 1)/2 variables, as svec(X): the diagonal, and √2 times the entries above it, so that inner products are
-//! traces.
+//! In n = N + 1 dimensions, with qᵢ = (yᵢ; 1): minimise f(X) = −ln det X over symmetric X ≻ 0 with qᵢᵀXqᵢ ≤ 1. The
+//! slice of the optimal { q : qᵀXq ≤ 1 } at height one is the enclosing ellipsoid (their Lemma B.1). X has D =
+//! n(n + 1)/2 variables, as svec(X): the diagonal, and √2 times the entries above, so that inner products are traces.
+//!
 //! Where we deviate: D is the number of variables in the update (the paper's text leaves it as the dimension); the
 //! gradients weigh off-diagonal entries twice, by svec; a cut for X ⋡ 0 takes a direction of negative curvature from
 //! the failed Cholesky factorisation in place of the eigenvector of the *least* (not "maximal") eigenvalue; the best

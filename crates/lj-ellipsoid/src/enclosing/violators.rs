@@ -37,6 +37,7 @@ pub(crate) struct Survivors<D> {
 ///
 /// Harman and Pronzato: with ε = max ω − n ≥ 0 every point with ω < n(1 + ε/2 − ½√(ε(4 + ε − 4/n))) has no weight at
 /// the optimum. Here ω = 1 + |y|², n = r + 1 and ε = κ − r; a relative 1e-10 guards against rounding.
+///
 /// R. Harman, L. Pronzato, *Improvements on removing nonoptimal support points in D-optimum design algorithms*,
 /// Stat. Probab. Lett. 77 (2007).
 pub(crate) fn elimination_threshold(r: usize, furthest: f64) -> f64 {

@@ -28,6 +28,7 @@ const DEPENDENT: f64 = 32.0 * f64::EPSILON;
 /// rounding, the coordinates are stretched to make *relaxed* half-spaces round, pᵢ·z ≤ sᵢ + τ with τ a little more than
 /// that thickness, and the program is solved again. If that ends without a point inside, the origin is one if all
 /// slacks there, which are exact to a rounding, are positive.
+///
 /// # Errors
 /// [`InscribedError::Unbounded`], [`InscribedError::NearlyUnbounded`], [`InscribedError::EmptyInterior`],
 /// [`InscribedError::NearlyEmpty`].

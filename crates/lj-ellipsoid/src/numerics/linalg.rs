@@ -182,8 +182,7 @@ pub(crate) fn orthogonalize_rows<D: Dimension>(dim: D, t: &mut [f64]) {
                     continue;
                 }
                 rotated = true;
-                // The rotation (c, s) with (c·a − s·b)·(s·a + c·b) = 0, t = s/c the root of least size of t² + 2ζt −
-                // 1 = 0.
+                // The rotation (c, s) with (c·a − s·b)·(s·a + c·b) = 0; t = s/c is the smaller root of t² + 2ζt = 1.
                 let zeta = (bb - aa) / (2.0 * ab);
                 let tangent = zeta.signum() / (zeta.abs() + (zeta * zeta + 1.0).sqrt());
                 let c = 1.0 / (tangent * tangent + 1.0).sqrt();
