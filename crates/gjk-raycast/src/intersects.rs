@@ -133,7 +133,7 @@ compiled_once! {
         }
         let mut state = Gjk::new(first.direction);
         let meet = state.begin_at_closest(pair, &frame, size);
-        // What begins elsewhere looks along another direction.
+        // A search that begins elsewhere has another first direction.
         let known =
             if meet.is_none() { first.point.map(|point| (point * frame.per_unit, PointPair::default())) } else { None };
         let max_iterations = options.max_iterations;

@@ -136,8 +136,8 @@ impl<V: Vector> DistanceOptions<V> {
         Self { extra: Closer::named(), ..Self::lean() }
     }
 
-    /// The default options, with no machine code besides GJK: a program in which all options are lean has three tenths of
-    /// the code for distances.
+    /// The default options, with no machine code besides GJK: a program in which all options are lean has three tenths
+    /// of the code for distances.
     ///
     /// The second measurement near contact is left out: of bodies that are apart, or overlap, by no more than a few
     /// roundings of their sizes. There the bracket is as wide as the errors of the largest number in the query, bodies

@@ -80,7 +80,7 @@ pub struct SignedDistance<V: Vector> {
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
     pub lower: V::Scalar,
     /// The signed distance is certainly not more: two points of the shapes are this far apart, or, in overlap, the
-    /// difference `A − B` contains the ball of radius `−upper` about zero. Infinity where a support map returned numbers
+    /// difference `A − B` contains the ball of radius `−upper` about zero. Infinity if a support map returned numbers
     /// that are not finite.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,

@@ -152,8 +152,7 @@ pub(super) struct Shifted<S> {
 }
 
 impl<V: Vector> Solver<'_, V> {
-    /// By the velocity of the material point of `a` relative to that of `b`, and the turns of the normal by both
-    /// bodies.
+    /// By the velocity of the material point of `a` relative to that of `b`, and both bodies' turns of the normal.
     pub(super) fn shifted(&self, apart: Across<V::Scalar>, turns: [Across<V::Scalar>; 2]) -> Shifted<V::Scalar> {
         let (at, [turn_a, turn_b]) = (self.at, turns);
         let [hessian_a, hessian_b] = at.hessians;

@@ -15,6 +15,8 @@ use crate::simplex::{Face, MAX_POINTS, faces};
 ///
 /// and the face is the `X` with `Δ_i(X) > 0` for all `i` in `X` and `Δ_j(X ∪ {j}) ≤ 0` for all others. Then `v = Σ
 /// Δ_i·y_i / Σ Δ_i`. Each determinant is computed once. The differences are taken before the products: a product of
+/// long vectors less another has no digits left for a short edge.
+///
 /// Rounding may change signs such that no face, or the wrong one, satisfies them. If none does, every face is tested
 /// for the nearest. The point is recomputed in its face by orthogonal projection, because the weighted sum of long
 /// vectors is a poor direction when it is short.
