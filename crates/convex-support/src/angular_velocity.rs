@@ -368,7 +368,7 @@ mod tests {
             let error = (quarter * quarter * quarter * quarter * DVec2::X - rotation(time) * DVec2::X).length();
             assert!(error < 16.0 * f64::EPSILON, "{time}: {error}");
         }
-        assert!(rotation(4e15).is_nan(), "beyond 2⁵⁰ nothing is said");
+        assert!(rotation(4e15).is_nan(), "unknown beyond 2⁵⁰");
     }
 
     #[test]

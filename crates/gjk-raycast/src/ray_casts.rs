@@ -131,7 +131,7 @@ pub fn ray_entries_into<S: CrossedByLine + ?Sized>(
     options: RayCastOptions<S::Vector>,
     entries: &mut [RayEntry<S::Vector>],
 ) -> Result<(), RayCastError> {
-    assert_eq!(rays.len(), entries.len(), "as many answers as rays");
+    assert_eq!(rays.len(), entries.len(), "there must be as many answers as rays");
     let mut by_lanes = is_plain(&options) && !options.max_lambda.is_nan();
     let mut lines = Lines::default();
     let mut outcome = Ok(());

@@ -156,7 +156,7 @@ impl Link {
 /// If there are too many items, 2³⁰ or more.
 #[inline]
 pub(super) fn index(of: usize) -> u32 {
-    assert!(of < Link::END, "a tree holds fewer than 2³⁰ items, and {of} is not the number of one");
+    assert!(of < Link::END, "the numbers of items are below 2³⁰, but {of} is not");
     of as u32
 }
 

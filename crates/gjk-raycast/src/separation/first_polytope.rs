@@ -140,4 +140,4 @@ impl<V: Vector> AffineSpan<V> {
 }
 
 /// The number of points is no more than the room for them.
-const _: () = assert!(MAX_POINTS == 4, "a simplex of space has four points");
+const _: () = assert!(MAX_POINTS == 4, "a simplex in space has four points");

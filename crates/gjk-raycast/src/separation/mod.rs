@@ -121,7 +121,7 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     wanted: &Wanted<V>,
     observer: &mut Observer<'_, V>,
 ) -> Separation<V> {
-    debug_assert_eq!(IS_DEPTH, wanted.is_depth(), "what is asked of overlap");
+    debug_assert_eq!(IS_DEPTH, wanted.is_depth(), "the constant must agree with the wanted answer");
     let (options, extra) = (&wanted.options, wanted.extra.get());
     if IS_DEPTH {
         // Rounded cores are mostly apart, which only a search can tell.

@@ -166,7 +166,7 @@ fn towards<V: Vector>(normal: V, y: V) -> V {
 /// The cross product, in space.
 #[inline(always)]
 pub(crate) fn cross<V: Vector>(a: V, b: V) -> V {
-    debug_assert!(V::DIM == 3, "cross products are of space");
+    debug_assert!(V::DIM == 3, "the cross product needs three dimensions");
     V::from_fn(|i| {
         let (j, k) = ((i + 1) % V::DIM, (i + 2) % V::DIM);
         a.get(j) * b.get(k) - a.get(k) * b.get(j)
