@@ -1,8 +1,8 @@
 //! Points of a core whose weighted mean is a given point, each identified by the direction along which it is farthest.
 //!
-//! The given point is on the core, and the normal there is known. The normal itself does not identify a point if all of
-//! a face is farthest along it. So the search looks along directions that are turned from it a little, towards each
-//! corner of the face. How far they have to be turned depends on the surface, and is found by trial.
+//! The given point is on the core, with a known normal. The normal itself does not identify a point if all of a face is
+//! farthest along it. So the search takes directions that are turned from it a little, towards each corner of the face.
+//! How far they have to be turned depends on the surface, and is found by trial.
 
 use alloc::vec::Vec;
 
@@ -22,7 +22,7 @@ pub(super) fn wide<V: Vector>(v: V) -> DVec3 {
 /// The support map of a core, relative to the given point.
 pub(super) type Support<'s, V> = dyn FnMut(V) -> DVec3 + 's;
 
-/// What is known about the given point, which is zero here.
+/// The given point, which is zero here.
 #[derive(Clone, Copy)]
 pub(super) struct Seen {
     pub(super) radius: f64,
@@ -207,7 +207,7 @@ impl<V: Vector> PointSearch<'_, '_, V> {
         FoundPoint { direction, point: (self.support)(direction) / self.scale }
     }
 
-    /// Looks for points around zero along directions near the unit vector `around`. It runs GJK on the projection of
+    /// Searches for points around zero along directions near the unit vector `around`. It runs GJK on the projection of
     /// the core along the ray, or along the normal if there is no ray or a radius has to be bridged. Returns how far
     /// the mean of the points found is from zero in this projection, and behind the plane of the normal.
     fn around(&mut self, around: DVec3, normal: DVec3, seen: &Seen) -> f64 {
@@ -223,7 +223,7 @@ impl<V: Vector> PointSearch<'_, '_, V> {
         };
         let count = V::DIM;
         for k in 0..count {
-            // Turned by any angle, so that nothing is met by accident.
+            // Turned by an arbitrary angle, so that no direction is special by accident.
             let angle = 0.7 + core::f64::consts::TAU * k as f64 / count as f64;
             let (sine, cosine) = if V::DIM == 3 { sin_cos(angle) } else { (0.0, 1.0 - 2.0 * k as f64) };
             let found = self.look(around + (u * cosine + w * sine) * self.turn, Care::Little);
@@ -265,7 +265,7 @@ impl<V: Vector> PointSearch<'_, '_, V> {
             _ => return,
         };
         for side in sides {
-            // Nearly across the normal, for what is far to the side of the corner.
+            // Nearly across the normal, to find points far to the side of the corner.
             let found = self.look(normal + side * 4.0, Care::Little);
             self.simplex.found.push(found);
         }

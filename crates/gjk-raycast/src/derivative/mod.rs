@@ -6,9 +6,9 @@
 //!
 //! > ds = n·(δa − δb),   δa and δb the displacements of the closest points,
 //!
-//! and a hit, at which `s = 0`, is put off by `dt = −n·(δa − δb)/(n·w)`, with `w` the velocity of `a` as seen from `b`.
-//! Nothing but the answer is needed for that. Whether the normal and the points are the only ones, and how they move,
-//! is asked of the shapes: [`ClosestFeatures`].
+//! and a hit, at which `s = 0`, is put off by `dt = −n·(δa − δb)/(n·w)`, with `w` the velocity of `a` relative to `b`.
+//! This needs only the answer. Whether the normal and the points are the only ones, and how they move, depends on the
+//! shapes: [`ClosestFeatures`].
 
 mod closest_features;
 mod features_of;

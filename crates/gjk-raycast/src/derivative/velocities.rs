@@ -16,7 +16,7 @@
 //!
 //! > a′ = … + λ·e,   e·(n′ − ω_A × n) = 0.
 //!
-//! An edge so takes one unknown of `n′` and gives `λ`; a face, or two edges that cross, take both.
+//! An edge takes one unknown of `n′` and gives `λ`; a face, or two edges that cross, take both.
 
 use convex_support::{AngularVelocity as _, Scalar, Vector};
 use num_traits::Float as _;

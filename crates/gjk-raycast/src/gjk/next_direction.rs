@@ -110,7 +110,7 @@ fn level<V: Vector>(state: &Gjk<V>, v: Direction<V>) -> V {
     v.n * state.axis_length + axis * (V::Scalar::from_f64(AXIS_WEIGHT) * v.length)
 }
 
-/// Newton's method on the plane ([`curvature`](crate::curvature)), where the support map knows its curvature.
+/// Newton's method on the plane ([`curvature`](crate::curvature)), if the support map returns its curvature.
 ///
 /// Among the unit vectors `n`, the distance of `C = A − B` from zero is the maximum of `f(n) = n·p(n)`, with `p(n)` the
 /// point of `C` lowest along `n`: all of `C` lies beyond the plane through it. There `p` points along `n`. With the
@@ -120,13 +120,13 @@ fn level<V: Vector>(state: &Gjk<V>, v: Direction<V>) -> V {
 /// f(n − δ) ≈ f − P·δ − δ·(H + ρ)·δ/2,   largest where   (H + ρ)·δ = −P.
 /// ```
 ///
-/// `H` has no negative eigenvalue, so that the matrix is definite; the length of the shortest vector known is taken for
-/// `ρ`, which is too large at first and so shortens the first steps. Newton's steps double the digits, and then `f` and
-/// `|p|` are bounds that meet, as long as `p` moves on one smooth piece of the surface.
+/// `H` has no negative eigenvalue, so that the matrix is definite. The length of the shortest known vector is taken for
+/// `ρ`; it is too large at first, which shortens the first steps. Newton's steps double the digits, and then the bounds
+/// `f` and `|p|` meet, as long as `p` moves on one smooth piece of the surface.
 ///
-/// A known point of `C` that lies before the plane so foretold is on another piece, and tells that the closest point is
-/// between both. Three pieces that meet fix a plane by themselves: there GJK's own steps suffice, and they are taken
-/// too where steps by curvature do not shrink the bracket.
+/// If a known point of `C` lies before the predicted plane, it is on another piece, and the closest point is between
+/// both. Three pieces that meet fix a plane by themselves: there GJK's own steps suffice. They are also taken if steps
+/// by curvature do not shrink the bracket.
 struct Newton<V: Vector> {
     noise: V::Scalar,
     /// The support point found before the last one, and its direction.

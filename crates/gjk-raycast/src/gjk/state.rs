@@ -98,7 +98,7 @@ impl<V: Vector> Gjk<V> {
         gap <= frame.noise || tolerance > V::Scalar::ZERO && gap <= tolerance * (self.lower - frame.radius)
     }
 
-    /// What an observer is shown after support point `w` was found.
+    /// The iterate for an observer, after support point `w` was found.
     #[inline(always)]
     pub(super) fn iterate(&self, w: V, scale: V::Scalar) -> Iterate<'_, V> {
         let (v, length) = self.shortest();
