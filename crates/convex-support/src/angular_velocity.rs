@@ -88,12 +88,12 @@ pub trait AngularVelocity<V: Vector>:
 /// }
 /// ```
 pub trait Spin<V: Vector>: Copy + Debug + Send + Sync + 'static + Sealed {
-    /// The displacement of a vector by the rotation after `time`, as [`AngularVelocity::turn`] has it.
+    /// The displacement of a vector by the rotation after `time`, as by [`AngularVelocity::turn`].
     fn turn(&self, time: V::Scalar) -> V::Matrix;
 }
 
 mod data {
-    /// What can be written and read where there is serde, so that no type that holds an angular velocity has to say so.
+    /// The traits of data with serde, so that no type with an angular velocity has to name them.
     #[cfg(feature = "serde")]
     pub trait Data: serde::Serialize + serde::de::DeserializeOwned {}
     #[cfg(feature = "serde")]
@@ -127,7 +127,7 @@ macro_rules! number {
 
             fn between(from: $S, to: $S) -> Self {
                 let turn = core::f64::consts::TAU;
-                // Exact, after Sterbenz, once the angles are near one another; whole turns are taken off before.
+                // Exact, after Sterbenz, if the angles are near one another; whole turns are subtracted before.
                 let angle = (to.as_f64() % turn) - (from.as_f64() % turn);
                 Self::from_f64(angle - turn * num_traits::Float::round(angle / turn))
             }
@@ -240,7 +240,7 @@ vector!(DVec3 by DMat3, DQuat, 10.0, |v| v, |v| v, |m| m);
 /// A rotation about an axis in space.
 #[derive(Clone, Copy, Debug)]
 pub struct SpinInSpace<V> {
-    /// The unit vector along it, or zero where nothing turns.
+    /// The unit vector along it, or zero if nothing turns.
     axis: DVec3,
     /// The rate in two parts, in a unit that is a power of two.
     rate: f64,
@@ -257,7 +257,7 @@ impl<V> SpinInSpace<V> {
         if angular_velocity == DVec3::ZERO {
             return Self { axis: DVec3::ZERO, rate: 0.0, lost: 0.0, unit: 1.0, space: PhantomData };
         }
-        // A power of two takes squares out of reach of over- and underflow.
+        // A power of two keeps squares from over- and underflow.
         let unit = comfortable_unit_of_length(angular_velocity.abs().max_element());
         let w = angular_velocity / unit;
         let rate = w.length();

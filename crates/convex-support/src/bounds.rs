@@ -106,7 +106,7 @@ impl<V: Vector> BoundingSphere<V> {
 /// ```
 #[must_use]
 pub fn bounding_sphere<S: SupportMap + ?Sized>(shape: &S) -> BoundingSphere<S::Vector> {
-    // Around the origin as far as the core says it reaches, or around the middle of the core's box to its corner.
+    // Around the origin with the extent of the core, or around the middle of the core's box to its corner.
     let core = core_box(shape);
     let Core { origin, radius, extent, .. } = shape.core();
     let corner = core.half_extents().norm();

@@ -1,10 +1,10 @@
-//! Functions that are compiled once, here, and not in every program that asks a question.
+//! Functions that are compiled once, here, and not in every program that calls them.
 //!
-//! The machine code of a generic function is made where its types become known, in the crate that calls it, at each of
-//! that crate's builds. What depends on the type of the vectors alone, of which there are five
-//! ([`Vector`](crate::Vector) is sealed), is made here instead: trees and hulls are built, and the searches of
-//! `gjk-raycast` know their bodies only behind pointers. What is left to a caller's crate is short: the shapes' own
-//! methods, and the closed forms that are tried before a search.
+//! The machine code of a generic function is made where its types become known, in the calling crate, at each of its
+//! builds. Functions that depend on the type of the vectors alone, of which there are five ([`Vector`](crate::Vector)
+//! is sealed), are compiled here instead: trees and hulls are built here, and the searches of `gjk-raycast` use their
+//! bodies only behind pointers. The rest in a caller's crate is short: the shapes' own methods, and the closed forms
+//! that are tried before a search.
 
 use core::any::{Any, TypeId};
 
@@ -12,10 +12,10 @@ use glam::{DVec2, Vec2, Vec3, Vec3A};
 
 use crate::Vector;
 
-/// Of five tables, for [`Vec2`], [`Vec3`], [`Vec3A`], [`DVec2`] and [`DVec3`](glam::DVec3), the one for `V`.
+/// The table for `V` of five, for [`Vec2`], [`Vec3`], [`Vec3A`], [`DVec2`] and [`DVec3`](glam::DVec3).
 ///
-/// These are comparisons of types and no loop, which the compiler would leave as it is, and all five tables in the
-/// program, where it is told to keep code small.
+/// It compares types without a loop: if told to keep code small, the compiler would leave a loop as it is, and all five
+/// tables in the program.
 #[doc(hidden)]
 #[inline(always)]
 pub fn of_vectors<V: Vector, T: 'static>([vec2, vec3, vec3a, dvec2, dvec3]: [&'static dyn Any; 5]) -> &'static T {
@@ -30,10 +30,10 @@ pub fn of_vectors<V: Vector, T: 'static>([vec2, vec3, vec3a, dvec2, dvec3]: [&'s
     found.downcast_ref().expect("`Vector` is sealed, and these are its types")
 }
 
-/// Declares a function whose body is compiled for each type of vector here; a call finds the one for its own.
+/// Declares a function whose body is compiled here for each type of vector; a call selects that of its own type.
 ///
-/// Which of the five it is, the compiler knows where it is called, and leaves the others out. That is a function of its
-/// own: within its callers it would have them save registers for a search that the first look at a pair mostly spares.
+/// The compiler knows the type at the call, and leaves the others out. The selection is a function of its own: inlined,
+/// it would make callers save registers for a search that the first test of a pair mostly avoids.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! compiled_once {

@@ -92,7 +92,7 @@ impl<V: Vector> CoreKind<V> {
     pub(crate) fn image(self, map: impl Fn(V) -> V, lost: V) -> Self {
         match self {
             Self::Point(at) => Self::Point(map(at) + lost),
-            // The middle of most is zero, and stays where it is.
+            // The middle of most is zero, and does not change.
             Self::Segment { middle, half } => {
                 let middle = if middle == V::ZERO { lost } else { map(middle) + lost };
                 Self::Segment { middle, half: map(half) }
@@ -130,7 +130,7 @@ impl<V: Vector> Rounding<V> {
         Self { extent, error: V::ZERO, error_length: V::Scalar::ZERO }
     }
 
-    /// A core of the given extents whose support points are wrong by a few units in the last place of the extents.
+    /// A core of the given extents whose support points have errors of a few units in the last place of the extents.
     #[must_use]
     pub fn relative(extent: V, units: f64) -> Self {
         Self::exact(raised_vector(extent)).with_error(roundings_of(2.0 * units, extent))
@@ -150,7 +150,7 @@ impl<V: Vector> Rounding<V> {
         Self { error: raised_vector(self.error + V::splat(error)), error_length, ..self }
     }
 
-    /// With what sweeping the core by a ball adds to it, where that becomes part of the core.
+    /// With the errors added by sweeping the core by a ball that becomes part of the core.
     #[must_use]
     pub(crate) fn swept(self, radius: V::Scalar) -> Self {
         if radius == V::Scalar::ZERO {
@@ -161,7 +161,7 @@ impl<V: Vector> Rounding<V> {
         Self { extent, ..self }.with_error(V::splat(roundings(6.0, radius)) + roundings_of(1.0, extent))
     }
 
-    /// The same with all bounds raised by what their own computation may have lost.
+    /// The same with all bounds raised for the rounding of their own computation.
     #[must_use]
     pub(crate) fn raised(self) -> Self {
         Self {

@@ -7,8 +7,8 @@ use alloc::sync::Arc;
 
 use crate::{CrossedByLine, SupportMap};
 
-/// Implements [`SupportMap`] by forwarding every method, the provided ones too:
-/// `forward!([parameters] type as |this| the shape that it is)`.
+/// Implements [`SupportMap`] by forwarding every method, the provided ones too: `forward!([parameters] type as |this|
+/// the shape that it is)`.
 macro_rules! forward {
     ([$($parameters:tt)*] $shape:ty as $V:ty, |$this:ident| $inner:expr) => {
         impl<$($parameters)*> $crate::SupportMap for $shape {
@@ -120,7 +120,7 @@ mod tests {
     use crate::{Affine, Ball, Capsule, CoreKind, Hint, Posed, Rounded, closest_point, line_crossing, support_value};
     use glam::DVec3;
 
-    /// A capsule has a radius, an extent and closed forms, all of which a forgotten method would lose.
+    /// A capsule has a radius, an extent and closed forms, all of which would be lost without its methods.
     fn is_the_capsule<S: CrossedByLine<Vector = DVec3> + Clone>(pointer: S) {
         let capsule = Capsule::<DVec3>::new(1.0, 0.5).expect("a capsule");
         let d = DVec3::new(1.0, -2.0, 0.5);

@@ -67,9 +67,9 @@ angle!(f64 rotates DVec2 by DMat2);
 /// With `u = ε/2`: the length is right to `3u`, and `1 − 2(y² + z²)`, with `2(y² + z²) ≤ 2`, loses `4·3u` of that, `4u`
 /// by the rounding of the quotients, and `5u` by its own operations; the other entries lose half as much.
 ///
-/// As an operator, the matrix is `1` and what is linear in the squared length, at most `2` long, which loses `4·3u`;
-/// the rounding of the quotients turns by `4u`; and its own operations leave `8u`, the root of the sum of their
-/// squares, as `Σ 2(y² + z²) ≤ 4`.
+/// As an operator, the matrix is `1` and a part that is linear in the squared length, at most `2` long, which loses
+/// `4·3u`; the rounding of the quotients turns by `4u`; and its own operations leave `8u`, the root of the sum of their
+/// squares, because `Σ 2(y² + z²) ≤ 4`.
 impl Rotation<DVec3> for DQuat {
     const MATRIX_ERROR: f64 = 11.0;
     const OPERATOR_ERROR: f64 = 12.0;
@@ -126,7 +126,7 @@ fn unit(q: DQuat) -> DQuat {
     let squared = v.length_squared();
     let excess = squared - 1.0;
     if excess.abs() < 1e-6 {
-        // Nearly unit, as most are: three terms of the series of 1/√(1 + x) are right to rounding, and quicker.
+        // If nearly unit, as mostly: three terms of the series of 1/√(1 + x) are right to rounding, and faster.
         DQuat::from_vec4(v * (1.0 - excess * (0.5 - 0.375 * excess)))
     } else if is_comfortable(squared) {
         DQuat::from_vec4(v * num_traits::Float::sqrt(squared).recip())
@@ -135,7 +135,7 @@ fn unit(q: DQuat) -> DQuat {
     }
 }
 
-/// The same where squares could over- or underflow: dividing by a power of two near the largest magnitude keeps them in
+/// The same if squares could over- or underflow: division by a power of two near the largest magnitude keeps them in
 /// range.
 #[cold]
 #[inline(never)]

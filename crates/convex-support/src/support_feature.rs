@@ -9,10 +9,10 @@ use crate::{Scalar, Vector, Vector3};
 /// The most points that a feature may have. If a face has more corners, some that span it are taken.
 const MAX_POINTS: usize = 16;
 
-/// Points of a rim that stand for a disc.
+/// The number of points on a rim that represent a disc.
 const RIM: u32 = 8;
 
-/// Directions that are probed for vertices.
+/// The number of directions in which vertices are searched.
 #[cfg(any(test, feature = "parry2d", feature = "parry2d-f64", feature = "parry3d", feature = "parry3d-f64"))]
 const PROBES: u32 = 12;
 
@@ -146,7 +146,7 @@ impl<V: Vector> Feature<V> {
         }
     }
 
-    /// Of points with these numbers, those no farther than `slab` behind the farthest along a direction.
+    /// Of the points with these numbers, those no farther than `slab` behind the farthest along a direction.
     pub(crate) fn collect(
         &mut self,
         direction: V,
@@ -161,9 +161,9 @@ impl<V: Vector> Feature<V> {
         if self.is_complete {
             return;
         }
-        // There are too many: then those that are farthest along directions across and against them, turned all around.
-        // None of these is along an edge of a face whose corners are evenly spaced, where rounding would tell which of
-        // its ends is farther.
+        // There are too many: take those that are farthest along directions across and against them, turned all around.
+        // None of these directions is along an edge of a face whose corners are evenly spaced, where rounding would
+        // decide which of its ends is farther.
         self.clear();
         let [e, f] = across(direction);
         let turned = |k: usize| sin_cos(core::f64::consts::TAU * (k as f64 + 0.3) / MAX_POINTS as f64);
@@ -192,10 +192,9 @@ impl<V: Vector> Feature<V> {
         }
     }
 
-    /// Of a shape that is known by its support points alone, the vertices around the one along a direction and no
-    /// farther than `slab` behind it: support points along directions turned all around by a small angle, as far as
-    /// they stay where they are at half of it. On what is curved they do not. Their numbers are made of their
-    /// coordinates.
+    /// For a shape with support points alone, the vertices around the one along a direction and no farther than `slab`
+    /// behind it: support points along directions turned all around by a small angle, if they are the same at half of
+    /// it. On a curved surface they are not. Their numbers are made of their coordinates.
     #[cfg(any(test, feature = "parry2d", feature = "parry2d-f64", feature = "parry3d", feature = "parry3d-f64"))]
     pub(crate) fn probe(&mut self, direction: V, slab: V::Scalar, support: impl Fn(V) -> V) {
         let point = support(direction);
@@ -213,12 +212,12 @@ impl<V: Vector> Feature<V> {
                 self.push(vertex, hash(vertex));
             }
         }
-        // Of a face there may be more.
+        // A face may have more.
         self.is_complete &= self.len < 3;
     }
 
-    /// The same of discs across the second axis, by height and radius: of each the support point, or points all around
-    /// where the disc is flat against the plane, or the support point and some around where it nearly is.
+    /// The same for discs across the second axis, by height and radius: the support point of each, or points all around
+    /// if the disc is flat against the plane, or the support point and some around if it nearly is.
     pub(crate) fn collect_discs(&mut self, direction: V, slab: V::Scalar, discs: [(V::Scalar, V::Scalar); 2])
     where
         V: Vector3,
@@ -241,7 +240,7 @@ impl<V: Vector> Feature<V> {
                 }
             } else if level((height, radius)) >= highest - slab {
                 self.push(center + swept(radius, across), k * (RIM + 1) + RIM);
-                // Of a disc that leans the part in the slab, if that is more than a sliver.
+                // If a disc leans, the part in the slab, unless that is a sliver.
                 if level((height, radius * V::Scalar::from_f64(0.5))) >= highest - slab && radius > V::Scalar::ZERO {
                     for i in 0..RIM {
                         let point = center + on_rim(i) * radius;
@@ -255,7 +254,7 @@ impl<V: Vector> Feature<V> {
     }
 }
 
-/// Unit vectors that span what is across a direction; in the plane one, and zero.
+/// Unit vectors that span the space across a direction; in the plane one, and zero.
 fn across<V: Vector>(direction: V) -> [V; 2] {
     let n = direction.unit().unwrap_or(V::ZERO);
     let a = n.abs();
@@ -268,7 +267,7 @@ fn across<V: Vector>(direction: V) -> [V; 2] {
     [e, f]
 }
 
-/// Sorts numbers. It knows no type, so that the sort is compiled here and not in every program that has shapes.
+/// Sorts numbers. It is not generic, so that the sort is compiled here and not in every program with shapes.
 fn sort(numbers: &mut [usize]) {
     numbers.sort_unstable();
 }

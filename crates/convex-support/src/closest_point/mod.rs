@@ -1,4 +1,4 @@
-//! The point of a set nearest a given point, where there is a closed form or nearly one.
+//! The point of a set nearest a given point, if it has a closed form or nearly one.
 
 mod cone;
 mod ellipsoid;
@@ -43,7 +43,7 @@ pub fn closest_point<S: SupportMap + ?Sized>(shape: &S, x: S::Vector) -> Option<
 
 /// The point of the ball of `radius` about `center` nearest `x`.
 ///
-/// Where `center` is the point of a set nearest `x`, this is the nearest point of the set swept by the ball.
+/// If `center` is the point of a set nearest `x`, this is the nearest point of the set swept by the ball.
 #[inline]
 pub(crate) fn closest_of_ball<V: Vector>(x: V, center: V, radius: V::Scalar) -> V {
     let out = x - center;
@@ -62,7 +62,7 @@ mod tests {
     use glam::{DQuat, DVec3};
     use std::{boxed::Box, vec::Vec};
 
-    /// Whether `p` is what `shape` should answer for `x`: every support plane contains it, and the one across `x − p`
+    /// Whether `p` is the point of `shape` nearest `x`: every support plane contains it, and the one across `x − p`
     /// touches it there.
     fn assert_closest(i: usize, shape: &dyn SupportMap<Vector = DVec3>, x: DVec3, size: f64) {
         let p = closest_point(shape, x).expect("a closed form");

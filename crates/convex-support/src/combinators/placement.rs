@@ -152,11 +152,11 @@ impl<V: Vector> Placement<'_, V> {
     /// most `length` long.
     ///
     /// With `u = ε/2`, and with rows and columns `±eⱼ` exact, since a row has two exact zeros only if the rotation has:
-    /// - the product of a row with `k` is wrong by `3u·Σ|mᵢⱼ|·extentⱼ`, and the sum with what was lost by `u`;
+    /// - the product of a row with `k` is wrong by `3u·Σ|mᵢⱼ|·extentⱼ`, and the sum with the lost part by `u`;
     /// - the direction in the shape's frame is wrong by `3u·|matrixᵀ|·|d|`, so that a point found along it may be short
     ///   of the farthest by that times twice the extent: `|d|·(6u·|matrix|·extent)`;
     /// - the error of the matrix itself moves the core and its origin;
-    /// - what was lost is known to `u` of itself and to `16ε²` of the numbers that it was computed from.
+    /// - the lost part has an error of `u` of itself and of `16ε²` of the numbers that it was computed from.
     #[inline(never)]
     pub(super) fn image(&self, shape: Rounding<V>, origin: V, length: V::Scalar) -> Rounding<V> {
         let (zero, m) = (V::Scalar::ZERO, self.matrix);

@@ -1,6 +1,6 @@
-//! The vectors and matrices of glam, each of which forwards to its own methods, but where those do not compute the same
-//! bits on every machine: products are fused in `Vec3A::cross` on some processors, and the minors of glam sum
-//! determinants in different orders.
+//! The vectors and matrices of glam. They forward to its methods, unless these compute different bits on some machines:
+//! products are fused in `Vec3A::cross` on some processors, and the minors of glam sum determinants in different
+//! orders.
 
 use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat2, Mat3, Mat3A, Quat, Vec2, Vec3, Vec3A, Vec3Swizzles as _};
 

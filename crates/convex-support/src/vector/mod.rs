@@ -174,9 +174,9 @@ mod tests {
         assert_eq!(Vector::unit(DVec2::new(f64::INFINITY, 1.0)), None, "an infinite vector has no direction");
     }
 
-    /// Where processors have an instruction for it, glam's own `Vec3A::cross` fuses a product and a difference: of a
-    /// vector with itself it then leaves what a product's rounding loses, and not zero. Registers must compute what
-    /// three numbers do.
+    /// On processors with an instruction for it, glam's own `Vec3A::cross` fuses a product and a difference: for a
+    /// vector with itself it then leaves the rounding of a product, and not zero. Registers must compute the same as
+    /// three numbers.
     #[test]
     fn vectors_in_registers_compute_the_bits_of_three_numbers() {
         use ::glam::{Mat3, Mat3A, Vec3};

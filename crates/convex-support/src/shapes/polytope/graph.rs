@@ -63,7 +63,7 @@ enum Rest {
     Climbed,
 }
 
-/// Vertices of a feature that are found along edges; of more, all points are looked at.
+/// The most vertices of a feature that are found along edges; beyond that, all points are tested.
 pub(super) const FOLLOWED: usize = 32;
 
 /// Vertices that a cell holds.
