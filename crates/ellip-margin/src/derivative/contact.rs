@@ -15,16 +15,16 @@
 //!
 //! > L_Nδ = ∓δ, L_Nω = −k(Rₖb + vt), L_δδ = L_δω = 0, L_ωω = k(½(m_θ·b_φ + m_φ·b_θ) + ht_θt_φ), γ_ω = −gₖht.
 //!
-//! *Stiff bodies.* N turns with a needle, and against one: a turn with N held is then answered by an N′ that takes
-//! nearly all of L_ωω back. So for the rotations of the body that is the stiffer of the two, and stiffer than the
-//! bodies are apart, N is taken as seen by that body. This is to turn all else by −ω, so that t, m and b are those of
-//! the other body for −ω, and of r ↦ exp(−[ω])(r ∓ δ) there remain
+//! *Stiff bodies.* N turns with a needle, and against one: a turn with N held then causes an N′ that takes nearly all
+//! of L_ωω back. So for the rotations of the stiffer body, if it is stiffer than the bodies are apart, N is taken as
+//! seen by that body. This turns all else by −ω, so that t, m and b are those of the other body for −ω, and of r ↦
+//! exp(−[ω])(r ∓ δ) there remain
 //!
 //! > L_Nω: −ω × r, L_ωω: −½((ω × N)·(φ × r) + (φ × N)·(ω × r)), L_δω: ∓δ·(ω × N).
 //!
-//! A ball has t = 0 and b = 0 to the last bit. Of A only the root is formed, A = MᵀM: xᵀHₖx = ‖e∧diag(a)Rₖᵀx‖²/h, so
-//! that the rows of M are these products, and the triangle of M = QR has the aspect for its condition and not the
-//! square of that.
+//! A ball has t = 0 and b = 0 to the last bit. Only the root of A is formed, A = MᵀM: xᵀHₖx = ‖e∧diag(a)Rₖᵀx‖²/h, so
+//! that the rows of M are these products. The condition of the triangle of M = QR is then the aspect and not its
+//! square.
 
 use convex_support::numerics::elementary::hypot;
 #[cfg(not(feature = "std"))]

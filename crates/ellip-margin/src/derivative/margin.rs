@@ -7,7 +7,7 @@
 //! - a turn δω of E₁ about p moves E₁ under a fixed x*: ∂m/∂ω = (x* − p) ∧ F. F at x* is a wrench. For E₂, its
 //!   opposite.
 //!
-//! In the code w and v are kept as each body sees them, w = R₁·diag(a₁)β and v = R₂·diag(a₂)y. Torques about the own
+//! In the code w and v are in the frames of the bodies, w = R₁·diag(a₁)β and v = R₂·diag(a₂)y. Torques about the own
 //! centre are w ∧ F = Σ wᵢFⱼ eᵢ∧eⱼ with wᵢ = a₁ᵢβᵢ and Fⱼ = −2βⱼ/a₁ⱼ, hence −2βᵢβⱼ(a₁ᵢ/a₁ⱼ − a₁ⱼ/a₁ᵢ) for each plane i
 //! < j.
 //!

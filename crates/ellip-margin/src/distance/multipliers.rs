@@ -9,14 +9,14 @@
 //!
 //! > (I − M)·Δ ln β = ln(h/β), Mᵢⱼ = qᵢᵀK⁻¹qⱼ/(hᵢ²βⱼ),
 //!
-//! where 0 ≤ Mₖₖ < 1 because K ⪰ Sₖ/βₖ. What is stiff in a thin body is inside K⁻¹ and solved exactly; the two numbers
-//! do not feel it. One pair of needles in ten thousand sends these steps round in a circle. Then the same matrix serves
-//! Newton's method on the convex
+//! where 0 ≤ Mₖₖ < 1 because K ⪰ Sₖ/βₖ. The stiff part of a thin body is inside K⁻¹ and solved exactly; it does not
+//! affect the two numbers. For one pair of needles in ten thousand these steps go round in a circle. Then the same
+//! matrix serves Newton's method on the convex
 //!
 //! > Φ(β) = ½(β₁ + β₂ − rᵀK⁻¹r) = min over d of ½‖d‖² + Σ(dᵀSₖd/βₖ + βₖ)/2 − r·d, ∂Φ/∂βₖ = ½(1 − hₖ²/βₖ²),
 //! > ∂²Φ/∂βᵢ∂βⱼ = hᵢ²/(βᵢ²βⱼ)·(I − M)ᵢⱼ, hence (I − M)·diag(β)⁻¹Δβ = ½(1 − β²/h²),
 //!
-//! which is slower, since it at most half as much again as β, but always descends.
+//! which is slower, because β at most grows by half, but always descends.
 
 use convex_support::numerics::elementary::{exp, ln};
 #[cfg(not(feature = "std"))]

@@ -4,10 +4,10 @@
 //!
 //! > y(ν) = p(ν)/D(ν), D(ν) = det(C + ν), p(ν) = adj(C + ν)·b = det C·c + … + νᴺ⁻¹b,
 //!
-//! and in 3D the term between is ν(tr C·b − Cb). The coefficients of D are det C = Π(a₂/a₁)², tr C = ‖B‖² and ‖cof B‖²,
-//! sums and products of positive terms that keep their digits at any condition. All terms of p point the same way in
-//! each eigendirection of C, so that ‖p‖ has the relative accuracy of its terms. What is lost, at most, are the
-//! cancellations in Bᵀg and Cb: a factor of the condition of B. ‖p‖ = D is then an equation in one number,
+//! in 3D with the middle term ν(tr C·b − Cb). The coefficients of D are det C = Π(a₂/a₁)², tr C = ‖B‖² and ‖cof B‖²,
+//! sums and products of positive terms that keep their digits at any condition. All terms of p have the same sign in
+//! each eigendirection of C, so that ‖p‖ has the relative accuracy of its terms. Only the cancellations in Bᵀg and Cb
+//! lose digits: a factor of the condition of B. ‖p‖ = D is then an equation in one number,
 //!
 //! > F(ν) = D(ν)² − N(ν) = 0, N(ν) = ‖p(ν)‖², the paper's polynomial of degree 2N.
 //!

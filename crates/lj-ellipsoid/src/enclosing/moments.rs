@@ -5,8 +5,8 @@
 //!
 //! > det M = det S, qᵢᵀM⁻¹qⱼ = 1 + zᵢ·zⱼ, ωᵢ = qᵢᵀM⁻¹qᵢ = 1 + |zᵢ|², where z = L⁻¹(y − c), S = L·Lᵀ.
 //!
-//! Any weights whatever certify: an ellipsoid that contains the points has ln det X ≤ −ln det S − N·ln N. (Averaging
-//! (yᵢ − c')ᵀX(yᵢ − c') ≤ 1 with u gives tr(X·S) ≤ 1, and det(X·S) ≤ (tr(X·S)/N)^N by the inequality of the means.)
+//! All weights certify: an ellipsoid that contains the points has ln det X ≤ −ln det S − N·ln N. (Averaging (yᵢ −
+//! c')ᵀX(yᵢ − c') ≤ 1 with u gives tr(X·S) ≤ 1, and det(X·S) ≤ (tr(X·S)/N)^N by the inequality of the means.)
 
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{cholesky_log_det, dot, solve_lower};

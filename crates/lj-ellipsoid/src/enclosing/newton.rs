@@ -8,9 +8,9 @@
 //! a non-negative least-squares problem: it decides by itself which weights become zero. φ is self-concordant, so a
 //! step damped by 1/(1 + δ), δ = √(dᵀHd), always ascends; longer steps are tried first.
 //!
-//! H is singular where the matrices qᵢqᵢᵀ are dependent: rectangles, boxes, regular polygons, points on a sphere, more
+//! H is singular if the matrices qᵢqᵢᵀ are dependent: rectangles, boxes, regular polygons, points on a sphere, more
 //! than n(n + 1)/2 points. M is still unique, u is not. A proximal term ½τ|v − u|² with τ some 1e-13 of H chooses the v
-//! nearest to u; it vanishes at the solution, so it moves no answer.
+//! nearest to u; it vanishes at the solution, so it changes no answer.
 
 use crate::enclosing::iterate::Iterate;
 use crate::enclosing::moments::Moments;

@@ -14,8 +14,8 @@
 //!
 //! > 0 ≤ Σyᵢ(1 − pᵢ·z)(|ζ| + vᵢ·ζ) ≤ |ζ|(1 + |Σyᵢvᵢ|) − ζᵀGζ, so that |ζ| ≤ (1 + |Σyᵢvᵢ|)/λ_min(G)
 //!
-//! (at the optimum G = I/N, and where Σyᵢvᵢ = 0 this is John's N). A tenth more makes up for errors of the pᵢ and Σyᵢpᵢ
-//! that are small as below.
+//! (at the optimum G = I/N, and if Σyᵢvᵢ = 0 this is John's N). A tenth more covers errors of the pᵢ and Σyᵢpᵢ that are
+//! small as below.
 
 use crate::inscribed::point::Point;
 use crate::numerics::dimension::Dimension;

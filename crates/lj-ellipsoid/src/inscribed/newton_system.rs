@@ -5,7 +5,7 @@
 //!
 //! > ∇²f·Δ + Σyᵢ∇²hᵢ·Δ − Σ(yᵢ + Δyᵢ)∇cᵢ = −∇f and yᵢ∇cᵢᵀΔ + cᵢΔyᵢ = μ − cᵢyᵢ.
 //!
-//! The second give Δyᵢ, and that in the first leaves
+//! The second equations give Δyᵢ, and with these the first become
 //!
 //! > (∇²f + Σyᵢ∇²hᵢ + Σ(yᵢ/cᵢ)∇cᵢ∇cᵢᵀ)·Δ = −∇f + Σ(μ/cᵢ)∇cᵢ.
 //!

@@ -1,7 +1,7 @@
 //! The primal–dual iteration for the maximum-volume ellipsoid in { z : pᵢ·z ≤ 1 }.
 //!
 //! With pᵢ the normals divided by their slacks at an interior point, in coordinates centred there, the body is
-//! { z : pᵢ·z ≤ 1 } and the ellipsoid { d + B·u : |u| ≤ 1 } lies in it where
+//! { z : pᵢ·z ≤ 1 } and the ellipsoid { d + B·u : |u| ≤ 1 } lies in it if
 //!
 //! > maximise ln det B over B ≻ 0 and d, subject to cᵢ = 1 − pᵢ·d − hᵢ ≥ 0, hᵢ = |B·pᵢ|.
 //!
