@@ -99,11 +99,11 @@ const NEAR: f64 = 8.0;
 ///   `2.5uS`. Along the line the sum of the two steps loses `uD`, that of the middle and the half `uD + uS`, and the
 ///   half `2.5uS`: in all `4uD + 7uS`;
 /// - to a slab, the difference from the side, its sum with the error and the quotient lose `4u(D + S)`: in all
-/// `5uD + 4uS`;
+///   `5uD + 4uS`;
 /// - to a cylinder, the foot loses `2uD + 2uS`, its disc and its slab from there `8uS`, and the sum with the foot's
 ///   parameter `uD`;
 /// - to a capsule's side, `3uD + 10uS` as to a cylinder's; to the ball at an end, whose centre is a size away,
-/// `5uD + 12uS`;
+///   `5uD + 12uS`;
 /// - to a swept core or a cone, a point of the line, at a parameter that is a sum, loses `2uD + 3uS`, and its distance
 ///   at most `6uS`.
 const OF_DISTANCE: f64 = 2.5;
