@@ -1,4 +1,4 @@
-//! A tree of boxes over ellipsoids: finds those of many that can be near, without testing each.
+//! A tree of boxes over ellipsoids: which of many can be near, without looking at each.
 
 use alloc::vec::Vec;
 
@@ -16,7 +16,7 @@ impl Aabb {
         let high: [f64; 3] =
             core::array::from_fn(|i| (self.center[i] + self.half[i]).max(other.center[i] + other.half[i]));
         let center: [f64; 3] = core::array::from_fn(|i| 0.5 * low[i] + 0.5 * high[i]);
-        // Outward, so that rounding never leaves a part of an ellipsoid outside.
+        // Outward, so that rounding never lets a part of an ellipsoid out.
         let half = core::array::from_fn(|i| {
             let half = (high[i] - center[i]).max(center[i] - low[i]);
             half + 4.0 * f64::EPSILON * (half + center[i].abs())
@@ -25,7 +25,7 @@ impl Aabb {
     }
 }
 
-/// The content of a node: the two halves, or up to [`LEAF`] of the items.
+/// What a node holds: the two halves, or up to [`LEAF`] of the items.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Node<'a> {
     /// The indices of two nodes.
@@ -54,7 +54,7 @@ struct Span {
 const LEAF: usize = 2;
 
 impl Hierarchy {
-    /// A tree over at least one of `boxes`: split at the median along the longest side.
+    /// A tree over `boxes`, of which there is at least one: split at the median along the longest side.
     pub(crate) fn new(boxes: &[Aabb]) -> Self {
         let mut tree = Self { boxes: Vec::new(), spans: Vec::new(), items: (0..boxes.len()).collect() };
         tree.build(boxes, 0, boxes.len());
@@ -78,7 +78,7 @@ impl Hierarchy {
         }
     }
 
-    /// The same tree around the items in their present places.
+    /// The same tree around the items where they are now.
     pub(crate) fn refit(&mut self, boxes: &[Aabb]) {
         // Children come after their parents.
         for index in (0..self.spans.len()).rev() {
@@ -95,10 +95,10 @@ impl Hierarchy {
         if second == 0 { Node::Leaf(&self.items[start..end]) } else { Node::Split(index + 1, second) }
     }
 
-    /// Visits all items of the leaves whose boxes, and those above, may concern.
+    /// Looks at all items of the leaves whose boxes, and those above, may concern.
     #[inline]
     pub(crate) fn search(&self, concerns: impl Fn(&Aabb) -> bool, mut look: impl FnMut(usize)) {
-        // Halves are equal: the depth is below 64 for any list that fits into memory, and each level leaves one node.
+        // Halves are equal: the depth is below 64 for any list that fits a memory, and each level leaves one node.
         let mut stack = [0; 64];
         let mut depth = 1;
         while depth > 0 {
@@ -129,7 +129,7 @@ impl Hierarchy {
     }
 }
 
-/// The box around the boxes of `items`, at least one.
+/// The box around the boxes of `items`, of which there is at least one.
 fn union(boxes: &[Aabb], items: &[usize]) -> Aabb {
     items[1..].iter().fold(boxes[items[0]], |sum, &i| sum.union(boxes[i]))
 }

@@ -217,8 +217,8 @@ fn finite_up(limit: f64) -> f32 {
     if limit < f64::from(f32::MAX) { up(limit).min(f32::MAX) } else { f32::MAX }
 }
 
-/// The largest power of two that is not above a positive number, or the nearest that is a normal number; 1 for numbers
-/// that are not positive or not finite.
+/// The largest power of two that is not above a positive number, or the nearest that is an ordinary number; 1 for what
+/// is not positive or not finite.
 pub(super) fn power_of_two_near(x: f64) -> f64 {
     if !(x > 0.0 && x < f64::INFINITY) {
         return 1.0;

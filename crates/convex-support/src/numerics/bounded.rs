@@ -12,7 +12,7 @@ const LOST: f64 = f64::EPSILON * f64::EPSILON * 64.0;
 /// The factor by which bounds on errors are raised, because they are rounded themselves.
 const RAISED: f64 = 1.0 + 16.0 * f64::EPSILON;
 
-/// The number `high + low`, with an error of at most `error`.
+/// The number `high + low`, which is wrong by `error` at most.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded {
     high: f64,
@@ -37,7 +37,7 @@ impl Bounded {
     #[must_use]
     pub fn bounds(self) -> [f64; 2] {
         let wide = self.error + self.low.abs() + f64::EPSILON * self.high.abs();
-        // If the low part and the error are less than half a unit in the last place, the next numbers are bounds.
+        // Where the low part and the error are less than half a unit in the last place, the next numbers are bounds.
         if wide.is_finite() { [self.high - wide, self.high + wide] } else { [f64::NEG_INFINITY, f64::INFINITY] }
     }
 
@@ -123,7 +123,7 @@ impl Div for Bounded {
         let second = (rest.high + rest.low) / other.high;
         let least = (other.high.abs() - other.low.abs() - other.error) * (1.0 - 4.0 * f64::EPSILON);
         let error = (self.error + (first.abs() + second.abs()) * other.error) / least + f64::MIN_POSITIVE;
-        // An error as large as the divisor leaves the quotient unknown.
+        // An error as large as the number that is divided by leaves nothing known.
         Self::new(first, second, if least > 0.0 { error } else { f64::INFINITY })
     }
 }

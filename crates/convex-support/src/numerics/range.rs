@@ -24,16 +24,16 @@ pub fn comfortable_unit_of_length<S: Scalar>(largest: S) -> S {
     if is_comfortable(largest * largest) { S::ONE } else { power_of_two_below(largest) }
 }
 
-/// The largest power of two that is not above `value`, or the smallest normal one; 1 if `value` is not positive or not
-/// finite.
+/// The largest power of two that is not above `value`, or the smallest normal one; 1 where `value` is not positive or
+/// not finite.
 #[cold]
 pub fn power_of_two_below<S: Scalar>(value: S) -> S {
     if value <= S::ZERO || !value.is_finite() {
         return S::ONE;
     }
     let (_, exponent, _) = num_traits::Float::integer_decode(value);
-    // The mantissa is an integer below 2/EPSILON; a subnormal number's begins with zero bits. Two factors, because the
-    // reciprocal of the least power is infinite.
+    // The mantissa is an integer of as many bits as EPSILON says, of which some of a subnormal number are zero. Two
+    // factors, since the reciprocal of the least power is none.
     let half = i32::from(exponent) / 2;
     power_of_two::<S>(half) / S::EPSILON * power_of_two(i32::from(exponent) - half)
 }

@@ -22,7 +22,7 @@ pub(super) struct Count {
     pub(super) left_out: LeftOut,
 }
 
-/// The search of the tree for one link.
+/// One link's way through the tree.
 pub(super) struct Search<V: Vector> {
     pub(super) frame: Frame,
     pub(super) least: Least<V>,
@@ -44,7 +44,7 @@ impl<V: Vector> Search<V> {
         index: usize,
         options: MarginOptions,
     ) {
-        // Halves are equal: the depth is below 64 for any list that fits into memory, and each level leaves one node.
+        // Halves are equal: the depth is below 64 for any list that fits a memory, and each level leaves one node.
         let mut stack = [(0, 0.0); 64];
         let mut depth = 1;
         stack[0] = (0, self.frame.box_distance(tree.bounds(0)));
@@ -84,7 +84,7 @@ impl<V: Vector> Search<V> {
                 }
             }
         }
-        // It was not reached again: it was counted with a box that was left out.
+        // Not met again: it was counted with a box that was left out.
         self.count.left_out.by_box -= usize::from(self.solved.is_some());
     }
 

@@ -65,7 +65,7 @@ impl Mover {
         }
     }
 
-    /// Its index among ‖N‖, h₁, h₂.
+    /// Its place among ‖N‖, h₁, h₂.
     fn index(self) -> usize {
         match self {
             Self::First => 1,
@@ -107,7 +107,7 @@ pub(super) struct Form {
     pub(super) units: Units,
 }
 
-/// The changes by each coordinate of a pose, translations first; as many as a pose has, 3 in 2D.
+/// What each coordinate of a pose changes, translations first; as many as a pose has, 3 in 2D.
 #[derive(Clone, Copy, Debug)]
 struct Rates {
     /// s.

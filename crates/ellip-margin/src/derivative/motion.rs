@@ -20,17 +20,17 @@ pub(super) fn gradient<V: Vector, const N: usize>(
     }
 }
 
-/// The Hessian of a function of the value of a contact.
+/// The Hessian of a number that is a function of the value of a contact.
 pub(super) fn hessian<V: Vector, const N: usize>(contact: &Contact<N>, mover: Mover, form: Form) -> MotionHessian<V> {
     MotionHessian::from_rows(contact.hessian(mover, form).map(|row| row.map(V::Scalar::from_f64)), true)
 }
 
-/// No change, if the quantity is at its floor.
+/// No change, where the quantity is at its floor.
 pub(super) fn no_gradient<V: Vector>(body: &Ellipsoid<V>) -> MotionGradient<V> {
     MotionGradient::force(V::ZERO, body.center())
 }
 
-/// The same for second derivatives.
+/// The same of second derivatives.
 pub(super) fn no_hessian<V: Vector>() -> MotionHessian<V> {
     MotionHessian::from_rows([[V::Scalar::ZERO; 6]; 6], true)
 }

@@ -10,7 +10,7 @@ use crate::{Answer, Distance, Scaling};
 
 /// An answer about two ellipsoids that is the value of their contact.
 trait ValueOfContact<V: Vector> {
-    /// The contact and its units; `None` if the quantity is at its floor.
+    /// The contact, and the units it is in; `None` where the quantity is at its floor.
     fn contact<const N: usize>(&self, first: &Ellipsoid<V>, second: &Ellipsoid<V>) -> Option<(Contact<N>, Units)>;
 }
 

@@ -177,7 +177,7 @@ compiled_once! {
         let closing = normal.dot(b.1.velocity(time, point) - a.1.velocity(time, point));
         let (a, b) = (at_time(a, time), at_time(b, time));
         let zero = V::Scalar::ZERO;
-        // They are apart by the target distance of the cast, which the hit does not store, or touch.
+        // They are as far apart as the target distance of the cast, which the hit does not know, or not at all.
         let (core_a, core_b) = (a.core(), b.core());
         let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
         let gap = normal.dot(a.support(-normal) - b.support(normal));

@@ -68,7 +68,7 @@ impl<V: Vector> ClosestFeatures<V> {
         let is_held = match (self.joint(), self.spans) {
             (Some(DifferenceSpan::None), _) if V::DIM == 2 => stiffness.a > least,
             (Some(DifferenceSpan::None), _) => least_eigenvalue(stiffness) > least,
-            // Across an edge, or parallel edges.
+            // Across an edge, or parallel ones.
             (Some(DifferenceSpan::Edge(_, e)), _) | (None, [Span::Edge(e), Span::Edge(_)]) => {
                 V::DIM == 2 || is_stiff((-e.1, e.0))
             }
@@ -167,6 +167,6 @@ fn least_eigenvalue<S: Scalar>(matrix: Symmetric<S>) -> S {
     let half = S::from_f64(0.5);
     let (mean, difference) = ((matrix.a + matrix.d) * half, (matrix.a - matrix.d) * half);
     let greatest = mean + hypot(difference, matrix.b);
-    // The product of both eigenvalues is the determinant.
+    // The product of both is the determinant.
     if greatest > S::ZERO { matrix.determinant() / greatest } else { mean - hypot(difference, matrix.b) }
 }

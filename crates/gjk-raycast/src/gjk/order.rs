@@ -1,13 +1,13 @@
-//! Which of two bodies a search takes first, independent of their order in the call.
+//! Which of two bodies a search takes first, whichever is given first.
 //!
-//! If bodies touch, rounding decides what is found, and the difference `A − B` is not rounded like `B − A`. The larger
-//! body comes first, so that all queries about one pair decide alike.
+//! Where bodies touch, rounding decides what is found, and the difference `A − B` is not rounded as `B − A` is. So that
+//! all queries about one pair decide alike, the larger body comes first.
 
 use convex_support::{Core, SupportMap, Vector};
 
 use crate::body::Both;
 
-/// Whether a body comes before another: it is larger, or as large and its origin is greater.
+/// Whether a body is looked at before another: it is larger, or as large and elsewhere.
 #[inline(always)]
 fn comes_first<V: Vector>(a: &Core<V>, b: &Core<V>) -> bool {
     if a.extent != b.extent {
@@ -21,7 +21,7 @@ fn comes_first<V: Vector>(a: &Core<V>, b: &Core<V>) -> bool {
 }
 
 impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Both<'_, A, B> {
-    /// The two bodies in order, and their cores in the order of the call.
+    /// The two in order, and their cores, which are given as they were named.
     #[inline(always)]
     pub(crate) fn in_order(mut self, [a, b]: [Core<A::Vector>; 2]) -> (Self, [Core<A::Vector>; 2]) {
         self.is_swapped = comes_first(&b, &a);

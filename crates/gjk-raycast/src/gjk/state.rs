@@ -57,7 +57,8 @@ impl<V: Vector> Gjk<V> {
         self.length <= frame.touching()
     }
 
-    /// The state at a face of the difference: `v` is its point closest to zero, made of its corners with these weights.
+    /// The state at a face of the difference, of which `v` is the point closest to zero and is made of its corners with
+    /// these weights.
     #[inline]
     pub(crate) fn at_face(
         corners: impl Iterator<Item = (V, PointPair<V>)>,

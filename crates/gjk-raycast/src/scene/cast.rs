@@ -287,7 +287,7 @@ struct SingleAnswer<H, S> {
 }
 
 impl<H, S: Scalar> SingleAnswer<H, S> {
-    /// The hit with the index of its body.
+    /// The hit as that of a body.
     fn of(self, body: usize) -> Option<BodyHit<H, S>> {
         let Self { hit, lower, upper, status, .. } = self;
         hit.map(|(_, hit)| BodyHit { body, hit, lower, upper, status })
@@ -308,13 +308,13 @@ impl<V: Vector> From<LinearCast<V>> for SingleAnswer<Impact<V>, V::Scalar> {
     }
 }
 
-/// The box of a ray, with room for the rounding of its points: 32 ε of the source.
+/// A ray, with room for the rounding of its points: 32 ε of the source.
 fn swept_point<V: Vector>(ray: Ray<V>) -> SweptBox<V> {
     let room = V::Scalar::from_f64(32.0) * V::Scalar::EPSILON * ray.source.abs().dot(V::ONE);
     SweptBox::new(V::splat(room), ray.source, ray.direction)
 }
 
-/// The box of a moving shape, in the frame of the bodies, with room for the target distance.
+/// The box of a shape that moves, in the frame of the bodies, with room for the target distance.
 fn swept_shape<A: SupportMap + ?Sized>(
     shape: &A,
     motion: Motion<A::Vector>,
