@@ -8,15 +8,15 @@ use crate::SubAlgorithm;
 use crate::body::AnyPair;
 use crate::unit::moderate;
 
-/// The first direction: the axis of an earlier query, or from one origin to the other.
+/// The direction to look along first: an axis that somebody knows, or from one origin to the other.
 #[inline(always)]
 pub(crate) fn first_direction<V: Vector>(axis: Option<V>, offset: V) -> V {
     axis.and_then(moderate).or_else(|| moderate(offset)).unwrap_or_else(|| Vector::axis(0))
 }
 
 impl<V: Vector> Gjk<V> {
-    /// Begins at the closest points of the cores of a pair of the given size, if they have a closed form: whether the
-    /// bodies meet there, to rounding. `None` if they have none; the state is then unchanged.
+    /// Begins at the closest points of the cores of a pair of the given size, where those are known in closed form:
+    /// whether the bodies meet there, to rounding. `None` where they are not known, and the state is as it was.
     #[inline(always)]
     pub(crate) fn begin_at_closest(
         &mut self,
@@ -30,7 +30,7 @@ impl<V: Vector> Gjk<V> {
 }
 
 impl<V: Vector> GjkOptions<V> {
-    /// Asks for the closest points to rounding, from a first direction.
+    /// All that can be known of the closest points, beginning with a direction.
     #[inline(always)]
     pub(crate) fn new(first: V, max_iterations: usize) -> Self {
         Self {
