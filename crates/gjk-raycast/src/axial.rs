@@ -1,5 +1,5 @@
-//! Angular velocities as vectors: along the axis in 3D, a number in the first coordinate in 2D. Sums, products and
-//! matrices of them read alike in both.
+//! Angular velocities as vectors: along the axis in 3D, a number in the first coordinate in 2D. Formulas for their
+//! sums, products and matrices are then the same in both.
 
 use convex_support::{AngularVelocity, Matrix, Vector};
 
@@ -31,7 +31,7 @@ pub(crate) fn product<V: Vector>(a: V, b: V) -> V {
     if V::DIM == 3 { cross(a, b) } else { V::ZERO }
 }
 
-/// The angular velocity as a rotation turns it, which leaves it alone in 2D.
+/// The angular velocity turned by a rotation, which changes nothing in 2D.
 #[inline(always)]
 pub(crate) fn turned<M: Matrix>(rotation: &M, spin: M::Vector) -> M::Vector {
     if M::Vector::DIM == 3 { *rotation * spin } else { spin }

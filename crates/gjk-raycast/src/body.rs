@@ -1,5 +1,5 @@
-//! Shapes as algorithms see them: a core and a radius, relative to the shape's origin and in [units](crate::unit) of
-//! its size.
+//! Shapes for the algorithms: a core and a radius, relative to the shape's origin and in [units](crate::unit) of its
+//! size.
 
 use convex_support::{CertainCrossing, Core, CoreKind, Hint, LineQuery, Scalar, SupportMap, Vector};
 
@@ -8,29 +8,29 @@ use crate::shape::{Shape, WithoutLines};
 use crate::symmetric::Symmetric;
 use crate::unit::{is_moderate, reciprocal_of_power};
 
-/// The support map of a core, whose points remember what they are made of: all that GJK asks of a body.
+/// The support map of a core, whose points keep the points that they come from: all that GJK needs of a body.
 pub(crate) trait TracedSupport {
     type Vector: Vector;
 
-    /// The support point, relative to the body's origin and in its unit, and the points of both shapes that it is the
-    /// difference of.
+    /// The support point, relative to the body's origin and in its unit, and the points of both shapes whose difference
+    /// it is.
     fn support(&mut self, direction: Self::Vector) -> (Self::Vector, PointPair<Self::Vector>);
-    /// The Hessian `H` of the support value, how fast the support point moves as the direction turns, as seen along two
+    /// The Hessian `H` of the support value, the rate at which the support point moves as the direction turns, for two
     /// changes `u` and `w`: the entries `u·Hu`, `u·Hw` and `w·Hw`.
     fn hessian(
         &self,
         direction: Self::Vector,
         changes: [Self::Vector; 2],
     ) -> Symmetric<<Self::Vector as Vector>::Scalar>;
-    /// Whether that may be anything but zero.
+    /// Whether the Hessian may be nonzero.
     fn is_curved(&self) -> bool;
 }
 
-/// A core and its radius, as casts see them.
+/// A core and its radius, for casts.
 pub(crate) trait CastBody: TracedSupport {
     /// Where a line of the world [certainly enters](SupportMap::certain_crossing) the body.
     fn certain_crossing(&self, line: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>>;
-    /// What the first shape has of the [Hessian](TracedSupport::hessian).
+    /// The part of the [Hessian](TracedSupport::hessian) that comes from the first shape.
     fn hessian_of_first(
         &self,
         direction: Self::Vector,
@@ -38,10 +38,10 @@ pub(crate) trait CastBody: TracedSupport {
     ) -> Symmetric<<Self::Vector as Vector>::Scalar> {
         self.hessian(direction, changes)
     }
-    /// What a point of the core is made of, where a crossing is known.
+    /// The points of the shapes that a point of the core comes from, if a crossing is known.
     fn witness(&self, point: Self::Vector) -> PointPair<Self::Vector>;
-    /// What the body is split into, in the world's unit. For a difference all is the sum, but for the origin, which is
-    /// that of the first shape alone, since subtracting the other's would round.
+    /// The parts of the body, in the world's unit. For a difference each is the sum, except for the origin, which is
+    /// that of the first shape alone, because subtracting the other's would round.
     fn measures(&self) -> Measures<Self::Vector>;
     /// Sets the unit to the given power of two.
     fn set_scale(&mut self, scale: <Self::Vector as Vector>::Scalar);
@@ -50,7 +50,7 @@ pub(crate) trait CastBody: TracedSupport {
 /// The lengths that all errors of a body are relative to, in the world's unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Measures<V: Vector> {
-    /// What positions are relative to.
+    /// The point to which positions are relative.
     pub(crate) origin: V,
     /// The radius around the core.
     pub(crate) radius: V::Scalar,
@@ -58,7 +58,7 @@ pub(crate) struct Measures<V: Vector> {
     pub(crate) extent: V::Scalar,
     /// The radius of a ball that rolls within all of the body.
     pub(crate) rolling_radius: V::Scalar,
-    /// A bound on what rounding has moved the support points of the core by.
+    /// A bound on how far rounding has moved the support points of the core.
     pub(crate) error: V::Scalar,
 }
 
@@ -137,8 +137,8 @@ impl Of {
     }
 }
 
-/// Two shapes as a search sees them: behind one pointer, so that it is compiled once for all shapes, and a support
-/// point of their difference is one call.
+/// Two shapes for a search: behind one pointer, so that it is compiled once for all shapes, and a support point of
+/// their difference is one call.
 pub(crate) trait Shapes {
     type Vector: Vector;
 
@@ -159,12 +159,12 @@ pub(crate) trait Shapes {
     fn certain_crossing(&self, _: Of, _: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>> {
         None
     }
-    /// Each of them, for what is rarely asked.
+    /// Each of them, for rare queries.
     fn each(&self) -> [Shape<'_, Self::Vector>; 2];
 }
 
-/// Two shapes of known types, which may tell where a line crosses them. The closed forms of line crossings are as much
-/// code as the whole search for a distance, so that they are left out where nobody asks for them.
+/// Two shapes of known types, with line crossings or without. The closed forms of line crossings are as much code as
+/// the whole search for a distance, so they are left out where they are not needed.
 pub(crate) struct Both<'a, A: ?Sized, B: ?Sized, const LINES: bool = false> {
     a: WithoutLines<'a, A>,
     b: WithoutLines<'a, B>,
@@ -178,7 +178,7 @@ impl<'a, A: ?Sized, B: ?Sized, const LINES: bool> Both<'a, A, B, LINES> {
         Self { a: WithoutLines(a), b: WithoutLines(b), is_swapped: false }
     }
 
-    /// Which of them one of the two is, as they were named.
+    /// Converts one of the two to the order of the call.
     #[inline(always)]
     fn named(&self, of: Of) -> Of {
         if self.is_swapped { of.other() } else { of }
@@ -246,9 +246,9 @@ pub(crate) struct Pair<'a, T: Shapes + ?Sized> {
     pub(crate) core_b: Core<T::Vector>,
     hints: [Hint; 2],
     per_unit: <T::Vector as Vector>::Scalar,
-    /// The radius of a ball that the difference is swept by; it is in that of the first core.
+    /// The radius of a ball that the difference is swept by; the first core's radius includes it.
     swept: <T::Vector as Vector>::Scalar,
-    /// The radii of balls that the cores are taken without, in units of the scale.
+    /// The radii of balls by which the cores are reduced, in units of the scale.
     pub(crate) peeled: [<T::Vector as Vector>::Scalar; 2],
 }
 
@@ -261,7 +261,7 @@ impl<'a, T: Shapes + ?Sized> Pair<'a, T> {
         Self::of_cores(shapes, shapes.cores())
     }
 
-    /// The same of shapes that have been asked for their cores.
+    /// The same for shapes whose cores are given.
     #[inline(always)]
     pub(crate) fn of_cores(shapes: &'a T, [core_a, core_b]: [Core<T::Vector>; 2]) -> Self {
         Self {
@@ -283,7 +283,7 @@ impl<T: Shapes + ?Sized> Pair<'_, T> {
         Self { core_a: self.core_a.rounded(radius), swept: radius, ..self }
     }
 
-    /// Begins anew to look for support points.
+    /// Forgets the hints for support points.
     pub(crate) fn forget_hints(&mut self) {
         self.hints = [Hint::new(), Hint::new()];
     }
@@ -300,7 +300,7 @@ impl<T: Shapes + ?Sized> Pair<'_, T> {
         self.core_a.extent + self.core_b.extent
     }
 
-    /// The sum of what rounding has moved the support points by.
+    /// The sum of the errors of the support points.
     #[inline(always)]
     pub(crate) fn error(&self) -> <T::Vector as Vector>::Scalar {
         self.core_a.error + self.core_b.error
@@ -312,9 +312,9 @@ impl<T: Shapes + ?Sized> Pair<'_, T> {
         self.extent() + self.radius() + offset.norm()
     }
 
-    /// Points of the cores that are closest to one another, in units of the scale, where one core is a point and the
-    /// other says its closest one, or both are segments. For bodies of the given [size](Self::size) whose origins
-    /// differ by `offset`, both in the world's unit.
+    /// Points of the cores that are closest to one another, in units of the scale, if one core is a point and the other
+    /// has a closed form for its closest point, or both are segments. For bodies of the given [size](Self::size) whose
+    /// origins differ by `offset`, both in the world's unit.
     #[inline(always)]
     pub(crate) fn closest_points(
         &self,
@@ -331,7 +331,7 @@ impl<T: Shapes + ?Sized> Pair<'_, T> {
             }
             _ => return None,
         };
-        // What closed forms compute of larger or smaller numbers may have left the range of the scalar.
+        // For larger or smaller numbers the closed forms may have left the range of the scalar.
         is_moderate(size).then(|| PointPair { a: a * self.per_unit, b: b * self.per_unit })
     }
 
@@ -348,7 +348,7 @@ impl<T: Shapes + ?Sized> Pair<'_, T> {
             (CoreKind::Segment { middle: x, half: u }, CoreKind::Segment { middle: y, half: w }) => {
                 between([u, w], [x, y])
             }
-            // A point is a segment without length.
+            // A point counts as a segment without length.
             (CoreKind::Segment { middle: x, half: u }, CoreKind::Point(y)) => between([u, Vector::ZERO], [x, y]),
             (CoreKind::Point(x), CoreKind::Segment { middle: y, half: w }) => between([Vector::ZERO, w], [x, y]),
             _ => v,
@@ -364,7 +364,7 @@ pub(crate) struct PointPair<V> {
 }
 
 impl<V> PointPair<V> {
-    /// The same of the two in the other order.
+    /// The same for the two in the other order.
     pub(crate) fn reversed(self) -> Self {
         Self { a: self.b, b: self.a }
     }
@@ -392,7 +392,7 @@ impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
         if !(from_a + from_b > Scalar::ZERO) {
             return (a - b, PointPair { a, b });
         }
-        // The support point of a core without a ball along a unit vector `u` is that of the whole less `r·u`.
+        // The support point of a core reduced by a ball, along a unit vector `u`, is that of the whole less `r·u`.
         let u = direction.unit().unwrap_or(direction);
         let (a, b) = (a - u * from_a, b + u * from_b);
         (a - b, PointPair { a, b })
@@ -414,9 +414,9 @@ impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
 }
 
 impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
-    /// Known where one of the cores is a point, which is known to its error. A point of the line is in the difference
-    /// where `b`, moved there by its origin, meets `a`.
-    // It is called through a pointer; a linker that sees through it would copy the whole of this to each call.
+    /// Known if one of the cores is a point, which has an error. A point of the line is in the difference if `b`, moved
+    /// there by its origin, meets `a`.
+    // Called through a pointer; a linker that resolves it would copy all of this to each call.
     #[inline(never)]
     fn certain_crossing(&self, line: LineQuery<T::Vector>) -> Option<CertainCrossing<T::Vector>> {
         let (core_a, core_b, zero) = (&self.core_a, &self.core_b, T::Vector::ZERO);
@@ -426,7 +426,7 @@ impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
                 (Of::A, line.sweeping(core_b.radius).sweeping(self.swept))
             }
             (CoreKind::Point(a), _) => {
-                // As `b` sees it, `a` moves, and backwards.
+                // Relative to `b`, `a` moves, and backwards.
                 let from_b = line.seen_from([core_b.origin, zero]);
                 let line = LineQuery { source: -from_b.source, direction: -from_b.direction, ..from_b };
                 let line = line.seen_from([-core_a.origin, -a]).within(core_a.error);
@@ -434,7 +434,7 @@ impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
             }
             _ => return None,
         };
-        // Asked at one place, since it is compiled for each pair of shapes.
+        // Called at one place, because it is compiled for each pair of shapes.
         let crossing = self.shapes.certain_crossing(of, line)?;
         Some(if of == Of::B { crossing.with_normal(|n| -n) } else { crossing })
     }

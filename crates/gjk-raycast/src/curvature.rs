@@ -41,7 +41,7 @@ pub(crate) fn between<S: Scalar>(h: Symmetric<S>, p: Across<S>, e: Across<S>, g:
     (e.0 * t + across.0 * s, e.1 * t + across.1 * s)
 }
 
-/// Whether `H` tells [`between`] more than rounding across `e`.
+/// Whether the part of `H` across `e` is more than rounding for [`between`].
 pub(crate) fn is_stiff_across<S: Scalar>(h: Symmetric<S>, e: Across<S>) -> bool {
     let across = (-e.1, e.0);
     dot(across, h.times(across)) > S::EPSILON.sqrt() * dot(e, e) * (h.a + h.d)
@@ -58,7 +58,7 @@ pub(crate) fn swept<S: Scalar>(core: Symmetric<S>, radius: S, across: Across<S>,
     }
 }
 
-/// A smooth piece of the surface at another normal than the one it was looked at along; see [`turned`].
+/// A smooth piece of the surface at another normal than the one it was found along; see [`turned`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned<S> {
     /// How far the support point moves across the axis.
@@ -94,7 +94,7 @@ pub(crate) fn turned<S: Scalar>(hessian: Symmetric<S>, m: Across<S>, change: Acr
     let g = hessian.times(change);
     let rise = S::from_f64(0.5) * dot(change, g) * per_s;
     let shift = (g.0 * per_s - m.0 * (rise * share), g.1 * per_s - m.1 * (rise * share));
-    // H' = H/s − (k·mᵀ + m·kᵀ) with half of the last term in each of the products.
+    // H' = H/s − (k·mᵀ + m·kᵀ), with half of the last term in each of the products.
     let k = (shift.0 * share, shift.1 * share);
     let hessian = Symmetric {
         a: hessian.a * per_s - (k.0 * m.0 + k.0 * m.0),

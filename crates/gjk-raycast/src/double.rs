@@ -5,7 +5,7 @@ use convex_support::{Scalar, Vector};
 /// Three coordinates; in the plane the last is zero.
 pub(crate) type Vec3 = [f64; 3];
 
-/// Squares of lengths and their products below this may have underflowed: what is so short does not count.
+/// Squares of lengths and their products below this may have underflowed: such short lengths do not count.
 pub(crate) const LEAST: f64 = 1e-250;
 
 /// The coordinates of a vector.

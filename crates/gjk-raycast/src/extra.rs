@@ -1,14 +1,14 @@
-//! What a search can do beyond its leanest form, and how options name it.
+//! The parts of a search beyond its leanest form, and how options name them.
 //!
-//! A program that calls a function contains it, whether it ever runs or not. So what a query needs rarely is called
-//! through a table of functions: a `static` for each type of vectors, that is compiled with the library. The options
-//! that `new` makes name the table, and with it all that is in it. Those of `lean` name none, so that no code of a
-//! program in which all options are lean leads there, and the linker leaves it out. Each query has a table of its own,
-//! which names those of the searches that it is made of.
+//! A program that calls a function contains it, whether it ever runs or not. So parts that a query needs rarely are
+//! called through a table of functions: a `static` for each type of vectors, compiled with the library. The options
+//! made by `new` name the table, and with it all functions in it. Those of `lean` name none, so that a program in which
+//! all options are lean has no path to them, and the linker leaves them out. Each query has a table of its own, which
+//! names those of the searches that it consists of.
 
 use core::fmt;
 
-/// The table of a query or none. Of one type all tables are the same.
+/// The table of a query, or none. All tables of one type are the same.
 pub(crate) struct Extra<T: 'static>(Option<&'static T>);
 
 impl<T> Extra<T> {

@@ -1,8 +1,8 @@
-//! A length along a normal, or a speed, and how well it is known.
+//! A length along a normal, or a speed, with a bound on its error.
 
 use convex_support::Scalar;
 
-/// A length along a normal, or a speed along it, as it is measured, and what that is wrong by at most.
+/// A measured length along a normal, or a speed along it, and a bound on its error.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Level<S> {
     pub(crate) value: S,

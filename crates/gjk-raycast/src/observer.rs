@@ -4,8 +4,8 @@ use convex_support::Vector;
 
 use crate::Iterate;
 
-/// An observer of a search, or none. It is behind a pointer, since the searches are compiled once. Iterates are only
-/// computed for an observer.
+/// An observer of a search, or none. It is behind a pointer, because the searches are compiled once. Iterates are
+/// computed only for an observer.
 pub(crate) struct Observer<'o, V: Vector>(Option<&'o mut Closure<'o, V>>);
 
 type Closure<'o, V> = dyn FnMut(Iterate<'_, V>) + 'o;
@@ -58,7 +58,7 @@ mod tests {
 
     use super::*;
 
-    /// Of bodies that were swapped, the difference is turned round.
+    /// For swapped bodies, the difference is turned round.
     #[test]
     fn iterates_are_shown_as_of_the_bodies_in_the_order_they_were_given_in() {
         for (is_swapped, sign) in [(false, 1.0), (true, -1.0)] {

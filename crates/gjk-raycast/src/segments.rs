@@ -1,5 +1,5 @@
-//! The closest points of two segments, as of the cores of capsules, in closed form. Not compiled into their callers, so
-//! that other pairs do not take longer.
+//! The closest points of two segments, such as the cores of capsules, in closed form. Not compiled into their callers,
+//! so that other pairs do not take longer.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -26,8 +26,8 @@ pub(crate) fn closest_points<V: Vector>(u: V, w: V, offset: V) -> (V, V) {
     }
 }
 
-/// Whether segments are looked at as they are given: the longer one comes first, or of equal ones the one that is
-/// farther along the axes.
+/// Whether segments keep their order: the longer one comes first, or of equal ones the one that is farther along the
+/// axes.
 #[inline(always)]
 fn is_in_order<V: Vector>(u: V, w: V, from_second: V) -> bool {
     let (uu, ww, zero) = (u.length_squared(), w.length_squared(), V::Scalar::ZERO);
@@ -67,7 +67,7 @@ fn normal_in_order<V: Vector>([u, w]: [V; 2], middles: [V; 2], [a, b]: [V; 2], v
     let (uu, ww, uw) = (u.length_squared(), w.length_squared(), u.dot(w));
     let (is_within_u, is_within_w) = (is_within(u, middles[0], a), is_within(w, middles[1], b));
     let (uv, wv) = (if is_within_u { u.dot(v) } else { zero }, if is_within_w { w.dot(v) } else { zero });
-    // Parallel segments are both across a vector that one of them is across.
+    // Parallel segments are both across any vector that one of them is across.
     let squared_sine = uu * ww - uw * uw;
     let is_across_both = is_within_u && is_within_w && squared_sine > uu * ww * V::Scalar::from_f64(PARALLEL);
     let (s, t) = if is_across_both {
@@ -82,11 +82,11 @@ fn normal_in_order<V: Vector>([u, w]: [V; 2], middles: [V; 2], [a, b]: [V; 2], v
     v + u * s - w * t
 }
 
-/// How many ε a point may be wrong by, of the half length and of the middle.
+/// The error of a point, in ε of the half length and of the middle.
 const AT_END: f64 = 8.0;
 
-/// Whether a point of a segment is certainly not one of its ends: a point that was added to the middle is not exactly
-/// where it was, and of a middle far from the origin that may be as much as the segment is long.
+/// Whether a point of a segment is certainly not one of its ends: a point that was added to the middle is rounded, and
+/// if the middle is far from the origin, by as much as the segment is long.
 #[inline(always)]
 fn is_within<V: Vector>(half: V, middle: V, point: V) -> bool {
     let squared = half.length_squared();
@@ -94,7 +94,7 @@ fn is_within<V: Vector>(half: V, middle: V, point: V) -> bool {
     (point - middle).dot(half).abs() < squared - error
 }
 
-/// The squared sine of the angle between segments below which they are as good as parallel.
+/// The squared sine of the angle between segments below which they count as parallel.
 const PARALLEL: f64 = 1e-6;
 
 /// The nearest number from −1 to 1; one of them for NaN.

@@ -1,13 +1,13 @@
-//! A shape behind a pointer, for what is rarely needed and so is compiled once.
+//! A shape behind a pointer, for rare queries that are compiled once.
 
 use convex_support::{Core, Hint, Parallelotope, Rounding, ScalarOf, SupportMap};
 
 /// A shape [without line crossings](WithoutLines), behind a pointer.
 pub(crate) type Shape<'s, V> = &'s dyn SupportMap<Vector = V>;
 
-/// A shape as distances and depths see it: where a line crosses it, and which feature supports it, they do not ask.
+/// A shape for distances and depths, which need neither its crossings by lines nor its feature.
 ///
-/// Of a shape behind a pointer all methods are compiled into a program, whether it asks them or not. The closed forms
+/// All methods of a shape behind a pointer are compiled into a program, whether it calls them or not. The closed forms
 /// of line crossings are as much code as the whole search for a distance, so they are left out here.
 #[derive(Clone, Copy)]
 pub(crate) struct WithoutLines<'s, S: ?Sized>(pub(crate) &'s S);

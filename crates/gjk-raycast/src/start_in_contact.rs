@@ -1,4 +1,4 @@
-//! Casts that begin in contact: what is known of the contact, and whether the motion goes deeper into it.
+//! Casts that begin in contact: the contact, and whether the motion goes deeper into it.
 
 use convex_support::{Posed, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
@@ -11,13 +11,13 @@ use crate::{
     distance,
 };
 
-/// How far on shapes are looked at first, in units of what they are known to; how much farther each time; and how often
-/// at most, which is more than their sizes in any precision.
+/// How far on shapes are tested first, in units of their uncertainty; how much farther each time; and how often at
+/// most, which is beyond their sizes in any precision.
 const FIRST: f64 = 64.0;
 const FARTHER: f64 = 8.0;
 const LOOKS: usize = 18;
 
-/// Two shapes where a cast begins. They are asked behind pointers, so that what is rarely needed is compiled once.
+/// Two shapes at the start of a cast. They are behind pointers, so that rare queries are compiled once.
 pub(crate) struct StartingPair<'s, V: Vector> {
     pub(crate) a: Shape<'s, V>,
     pub(crate) b: Shape<'s, V>,
@@ -26,8 +26,8 @@ pub(crate) struct StartingPair<'s, V: Vector> {
 }
 
 impl<V: Vector> StartingPair<'_, V> {
-    /// Answers a hit at the start by a point of both shapes, and the normal if they only touch: the cast knows where
-    /// the motion enters, which is behind the start or, sliding, ahead of it.
+    /// Returns a hit at the start by a point of both shapes, and the normal if they only touch: the entry that the cast
+    /// finds is behind the start or, if they slide, ahead of it.
     #[cold]
     #[inline(never)]
     pub(crate) fn touch(&self, answer: &mut LinearCast<V>, options: &LinearCastOptions<V>) {
@@ -82,7 +82,7 @@ impl<V: Vector> StartingPair<'_, V> {
         if !(closing > sliding(speed)) {
             return Some(InContact { start, leaves_along: Some(start.normal) });
         }
-        // Where the depth is known to rounding, what nowhere shows slides.
+        // If the depth is known to rounding, a motion that never shows a change slides.
         let slides = start.upper >= self.target - slack || start.upper - start.lower <= slack;
         let leaves_along = match self.later(velocity, speed / closing, &start, slack) {
             Later::Deeper => None,
@@ -93,7 +93,7 @@ impl<V: Vector> StartingPair<'_, V> {
     }
 
     /// Whether the shapes get deeper than they start as they move along a velocity, so many times as far as they come
-    /// nearer along the normal: looked at from so far on that it shows, if the normal is the only one, to as far as
+    /// nearer along the normal. They are tested so far on that it shows, if the normal is the only one, to as far as
     /// their sizes.
     fn later(&self, velocity: V, per_depth: V::Scalar, start: &SignedDistance<V>, slack: V::Scalar) -> Later<V> {
         let SignedDistance { upper, lower, normal, .. } = *start;
@@ -123,7 +123,7 @@ impl<V: Vector> StartingPair<'_, V> {
     }
 }
 
-/// How shapes in contact are to one another later than at the start; if they are not deeper, with the normal.
+/// Whether shapes in contact are deeper later than at the start; if not, with the normal.
 enum Later<V> {
     Deeper,
     Less(V),
@@ -133,6 +133,6 @@ enum Later<V> {
 /// Two shapes in contact.
 pub(crate) struct InContact<V: Vector> {
     pub(crate) start: SignedDistance<V>,
-    /// Where the motion does not go deeper: the direction from `b` to `a` along which it leaves, or slides.
+    /// If the motion does not go deeper: the direction from `b` to `a` along which it leaves, or slides.
     pub(crate) leaves_along: Option<V>,
 }

@@ -29,7 +29,7 @@ impl<S: Scalar> Symmetric<S> {
         ((self.d * x - self.b * y) * inverse, (self.a * y - self.b * x) * inverse)
     }
 
-    /// Whether there is a solution that is more than rounding.
+    /// Whether the solution is more than rounding.
     pub(crate) fn is_regular(self) -> bool {
         self.determinant() > S::EPSILON.sqrt() * self.a * self.d
     }

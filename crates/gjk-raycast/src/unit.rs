@@ -1,17 +1,17 @@
-//! The unit of length that algorithms work in: a power of two near the size of what is compared.
+//! The unit of length of the algorithms: a power of two near the size of the compared lengths.
 //!
 //! Numbers of magnitude about one neither over- nor underflow when they are multiplied a few times, in `f32` as in
-//! `f64`; and since the unit is a power of two, scaling a scene by one changes nothing but the unit.
+//! `f64`; and because the unit is a power of two, scaling a scene by one changes only the unit.
 
 pub(crate) use convex_support::numerics::range::is_moderate;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-/// A power of two near `size`, or the nearest that has a finite reciprocal; 1 where `size` is zero or not finite.
+/// A power of two near `size`, or the nearest that has a finite reciprocal; 1 if `size` is zero or not finite.
 #[inline]
 pub(crate) fn power_of_two_near<S: Scalar>(size: S) -> S {
-    // Positive numbers have the order of their bits. The reciprocal is to be finite, and not subnormal: half of the
-    // largest power is near enough to it.
+    // Positive numbers are ordered like their bits. The reciprocal must be finite and not subnormal: half of the
+    // largest power is near enough.
     let least = S::max_value().recip().as_f64().to_bits();
     let largest = S::max_value().as_f64().to_bits() & EXPONENT;
     let power = size.as_f64().to_bits() & EXPONENT;
@@ -29,15 +29,15 @@ fn unusual_unit<S: Scalar>(size: S) -> S {
     if size > S::ZERO && size.is_finite() { S::min_positive_value() } else { S::ONE }
 }
 
-/// What is lost, beside errors that are relative, of lengths of about `size`: nothing, or everything if it is so small
-/// that a product with a short direction may be subnormal. A direction that matters is no shorter than `ε`, and the
-/// least number is to be no more than `ε` of the product.
+/// The error of lengths of about `size`, beside relative errors: nothing, or everything if the size is so small that a
+/// product with a short direction may be subnormal. A direction that matters is no shorter than `ε`, and the least
+/// number must be no more than `ε` of the product.
 #[inline(always)]
 pub(crate) fn lost_to_underflow<S: Scalar>(size: S) -> S {
     if size >= S::min_positive_value() / S::EPSILON { S::ZERO } else { S::infinity() }
 }
 
-/// The reciprocal of what [`power_of_two_near`] answers, by its exponent: all that follows waits for the unit.
+/// The reciprocal of the result of [`power_of_two_near`], by its exponent: all later steps wait for the unit.
 #[inline]
 pub(crate) fn reciprocal_of_power<S: Scalar>(power: S) -> S {
     S::from_f64(f64::from_bits(2 * 1.0_f64.to_bits() - power.as_f64().to_bits()))
@@ -47,8 +47,8 @@ pub(crate) fn reciprocal_of_power<S: Scalar>(power: S) -> S {
 const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
 const EXPONENT_STEP: u64 = 0x0010_0000_0000_0000;
 
-/// The same direction at a length that is moderate, by a power of two and so without rounding. `None` for the zero
-/// vector and where a coordinate is not finite.
+/// The same direction at a moderate length, by a power of two and so without rounding. `None` for the zero vector and
+/// if a coordinate is not finite.
 #[inline(always)]
 pub(crate) fn moderate<V: Vector>(v: V) -> Option<V> {
     if is_moderate(v.length_squared()) {
