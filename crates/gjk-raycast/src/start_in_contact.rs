@@ -1,6 +1,6 @@
 //! Casts that begin in contact: what is known of the contact, and whether the motion goes deeper into it.
 
-use convex_support::{Posed, Scalar, SupportMap, Vector};
+use convex_support::{Posed, Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::cast::sliding;

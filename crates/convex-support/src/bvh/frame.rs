@@ -204,7 +204,8 @@ impl CoarseUnit {
 
     /// The same for squares of bounds.
     #[inline]
-    pub(super) fn limit_of_squares(&self, limit: f64) -> f32 {
+    #[must_use]
+    pub fn limit_of_squares(&self, limit: f64) -> f32 {
         let limit = self.room(limit);
         finite_up(limit * limit)
     }
