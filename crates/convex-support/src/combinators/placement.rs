@@ -1,4 +1,4 @@
-//! What rounding does to a set that is mapped and moved.
+//! The rounding of a set that is mapped and moved.
 
 use core::array;
 
@@ -133,7 +133,7 @@ fn without<V: Vector>(v: V, left_out: [bool; 3]) -> V {
     V::from_fn(|i| if left_out[i] { V::Scalar::ZERO } else { v.get(i) })
 }
 
-/// A linear map and a translation, and what is known of their rounding.
+/// A linear map and a translation, with bounds on their rounding.
 pub(super) struct Placement<'a, V: Vector> {
     pub(super) matrix: &'a V::Matrix,
     /// A bound on the error of every entry of the matrix, except in rows `±eⱼ`, which are exact.
@@ -157,6 +157,7 @@ impl<V: Vector> Placement<'_, V> {
     ///   of the farthest by that times twice the extent: `|d|·(6u·|matrix|·extent)`;
     /// - the error of the matrix itself moves the core and its origin;
     /// - what was lost is known to `u` of itself and to `16ε²` of the numbers that it was computed from.
+    #[inline(never)]
     pub(super) fn image(&self, shape: Rounding<V>, origin: V, length: V::Scalar) -> Rounding<V> {
         let (zero, m) = (V::Scalar::ZERO, self.matrix);
         let Exact { rows, columns } = Exact::of(m);

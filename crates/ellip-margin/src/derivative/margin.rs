@@ -1,4 +1,4 @@
-//! How the margin changes as a body moves.
+//! The derivatives of the margin as a body moves.
 //!
 //! With w = x* − x₁, v = x* − x₂ and z = Qv, stationarity says Pw = −νz, and since the minimiser moves to second order
 //! only, the margin changes as (x* − x₁)ᵀP(x* − x₁) + ν((x* − x₂)ᵀQ(x* − x₂) − 1) does with x* and ν held:

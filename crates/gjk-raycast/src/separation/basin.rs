@@ -11,15 +11,15 @@ use crate::SignedDistanceOptions;
 /// Newton's steps from one direction.
 const MAX_STEPS: usize = 12;
 
-/// Steps in a row that may find nothing lower: of two pieces that meet, one is foretold from farther away until it is
-/// seen again.
+/// The steps in a row that may find nothing lower: if two pieces meet, one is predicted from farther away until it is
+/// found again.
 const PATIENCE: usize = 2;
 
 /// Newton's method from a direction to the bottom of its basin, on one smooth piece of the boundary or along the fold
-/// between two. `others` are support points near by, one of which may be of the second piece. The bottom, and what was
-/// not foretold on the way there, make the polytope larger as well. A `last` look goes to edges, too, where pieces
-/// without a bottom of their own meet others, which the polytope comes to by itself if it goes on. `None` where a
-/// support point is not finite.
+/// between two. `others` are support points near by, one of which may be of the second piece. The bottom, and points
+/// on the way there that differ from the prediction, make the polytope larger as well. A `last` search goes to edges,
+/// too, where pieces without a bottom of their own meet others, which the polytope finds by itself if it goes on.
+/// `None` if a support point is not finite.
 pub(super) fn descend<V: Vector>(
     cores: &mut Cores<'_, V>,
     boundary: &mut Boundary<V>,
@@ -44,7 +44,7 @@ pub(super) fn descend<V: Vector>(
         let Some(u) = u.filter(|_| cores.iterations < options.max_iterations && failures < PATIENCE) else { break };
         let next = WayOut::new(cores.support(u)?);
         let piece = Piece::new(cores, &next.vertex);
-        // As high to rounding, the bottom shows by the slope: it is known to twice as many digits as by the height.
+        // At equal heights to rounding, the slope shows the bottom: it has twice as many accurate digits as the height.
         let is_level = (next.h - way.h).abs() <= cores.error_along(u);
         let is_lower =
             if is_level { next.rest().length_squared() < way.rest().length_squared() } else { next.h < way.h };
@@ -74,8 +74,8 @@ pub(super) fn descend<V: Vector>(
     Some(way)
 }
 
-/// The support point that is farthest beyond a piece where that piece alone would lead; where it would lead nowhere,
-/// the one that it foretells worst.
+/// The support point that is farthest beyond a piece where that piece alone would lead; if it would lead nowhere, the
+/// one with the worst prediction.
 fn contradiction<'v, V: Vector>(piece: &Piece<V>, others: &'v [Vertex<V>]) -> Option<&'v Vertex<V>> {
     let foretold_worse = others.iter().filter(|vertex| !piece.foretells(vertex));
     let to = piece.step();
