@@ -63,7 +63,7 @@ pub(super) fn length_of_error<V: Vector>(
     if core.origin == V::ZERO {
         return raised(turned);
     }
-    let placed = error_of_origin(core.origin, core.extent + core.radius, scale, translation);
+    let placed = error_of_origin(core.origin, core.size(), scale, translation);
     raised(turned + placed + roundings(2.0, operator_error * core.origin.norm()) + roundings(2.0, lost.norm()))
 }
 

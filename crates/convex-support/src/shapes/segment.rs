@@ -82,14 +82,7 @@ impl<V: Vector> SupportMap for Segment<V> {
     fn core(&self) -> Core<V> {
         let (origin, extent) = (middle(self.points), extent(&self.points).norm());
         let (middle, half) = self.middle_and_half();
-        Core {
-            origin,
-            radius: V::Scalar::ZERO,
-            rolling_radius: V::Scalar::ZERO,
-            extent,
-            error: roundings(9.0, extent),
-            kind: CoreKind::Segment { middle, half },
-        }
+        Core { origin, error: roundings(9.0, extent), ..Core::exact(CoreKind::Segment { middle, half }, extent) }
     }
 
     #[inline]

@@ -105,15 +105,9 @@ impl<V: Vector> SupportMap for Triangle<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        let (origin, extent) = (middle(self.points), extent(&self.points).norm());
-        Core {
-            origin,
-            radius: V::Scalar::ZERO,
-            rolling_radius: V::Scalar::ZERO,
-            extent,
-            error: roundings(24.0, extent),
-            kind: CoreKind::Polytope,
-        }
+        let extent = extent(&self.points).norm();
+        let exact = Core::exact(CoreKind::Polytope, extent);
+        Core { origin: middle(self.points), error: roundings(24.0, extent), ..exact }
     }
 
     #[inline]

@@ -172,14 +172,8 @@ impl<V: Vector> SupportMap for Polytope<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core {
-            origin: self.middle,
-            radius: V::Scalar::ZERO,
-            rolling_radius: V::Scalar::ZERO,
-            extent: self.extent,
-            error: self.rounding.error_length,
-            kind: CoreKind::Polytope,
-        }
+        let exact = Core::exact(CoreKind::Polytope, self.extent);
+        Core { origin: self.middle, error: self.rounding.error_length, ..exact }
     }
 
     #[inline(always)]
