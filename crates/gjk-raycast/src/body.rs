@@ -239,7 +239,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
 }
 
 impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Both<'_, A, B> {
-    /// The two in order, and their cores, which are given as they were named.
+    /// The two bodies in order, and their cores in the order of the call.
     #[inline(always)]
     pub(crate) fn in_order(mut self, [a, b]: [Core<A::Vector>; 2]) -> (Self, [Core<A::Vector>; 2]) {
         self.is_swapped = comes_first(&b, &a);
@@ -248,10 +248,10 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Both<'_
     }
 }
 
-/// Whether a body is looked at before another: it is larger, or as large and elsewhere.
+/// Whether a body comes before another: it is larger, or as large and its origin is greater.
 ///
-/// Where bodies touch, rounding decides what is found, and the difference `A − B` is not rounded as `B − A` is. So that
-/// all queries about one pair decide alike, whichever body is named first, the larger one comes first.
+/// If bodies touch, rounding decides what is found, and the difference `A − B` is not rounded like `B − A`. The larger
+/// body comes first, in either order of the call, so that all queries about one pair decide alike.
 #[inline(always)]
 fn comes_first<V: Vector>(a: &Core<V>, b: &Core<V>) -> bool {
     if a.extent != b.extent {
@@ -264,7 +264,7 @@ fn comes_first<V: Vector>(a: &Core<V>, b: &Core<V>) -> bool {
     other.is_some_and(|i| a.origin.get(i) > b.origin.get(i))
 }
 
-/// The difference of two shapes, whose support points remember both shapes' points.
+/// The difference of two shapes, whose support points keep both shapes' points.
 pub(crate) struct Pair<'a, T: Shapes + ?Sized> {
     pub(crate) shapes: &'a T,
     pub(crate) core_a: Core<T::Vector>,

@@ -15,7 +15,7 @@ pub(crate) struct Symmetric<S> {
 impl<S: Scalar> Symmetric<S> {
     pub(crate) const ZERO: Self = Self { a: S::ZERO, b: S::ZERO, d: S::ZERO };
 
-    /// That of the entries `a`, `b` and `d`.
+    /// The matrix of the entries `a`, `b` and `d`.
     pub(crate) fn of([a, b, d]: [S; 3]) -> Self {
         Self { a, b, d }
     }
@@ -71,16 +71,15 @@ impl<S: Scalar> Symmetric<S> {
     /// The least eigenvalue.
     pub(crate) fn least_eigenvalue(self) -> S {
         let (mean, apart) = self.eigenvalues();
-        // The product of both is the determinant.
+        // The product of both eigenvalues is the determinant.
         if mean + apart > S::ZERO { self.determinant() / (mean + apart) } else { mean - apart }
     }
 
-    /// The greatest eigenvalue of a matrix without negative ones, and its unit eigenvector; `None` where that is no
-    /// number.
+    /// The greatest eigenvalue of a matrix without negative ones, and its unit eigenvector; `None` if that is NaN.
     pub(crate) fn greatest_eigen(self) -> Option<(S, Across<S>)> {
         let (mean, apart) = self.eigenvalues();
         let greatest = mean + apart;
-        // (H − λ)·x = 0: of both rows the one that cancels less.
+        // (H − λ)·x = 0: by the row that cancels less.
         let x = if self.a > self.d { (greatest - self.d, self.b) } else { (self.b, greatest - self.a) };
         let length = hypot(x.0, x.1);
         (length > S::ZERO).then(|| (greatest, (x.0 / length, x.1 / length)))
@@ -118,7 +117,7 @@ pub(crate) fn direction<S: Scalar>(from: Across<S>, to: Across<S>) -> Across<S> 
     scaled(e, dot(e, e).sqrt().recip())
 }
 
-/// The way from one place to another.
+/// The vector from one place to another.
 pub(crate) fn way<S: Scalar>(from: Across<S>, to: Across<S>) -> Across<S> {
     (to.0 - from.0, to.1 - from.1)
 }

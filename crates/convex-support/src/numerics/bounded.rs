@@ -12,7 +12,7 @@ const LOST: f64 = f64::EPSILON * f64::EPSILON * 64.0;
 /// The factor by which bounds on errors are raised, because they are rounded themselves.
 const RAISED: f64 = 1.0 + 16.0 * f64::EPSILON;
 
-/// A number that is wrong by `error` at most.
+/// A number with an error of at most `error`.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded {
     value: DoubleDouble,
@@ -26,7 +26,7 @@ impl Bounded {
         Self { value: DoubleDouble::sum(a, b), error: 0.0 }
     }
 
-    /// What an operation makes of numbers that leave it wrong by this.
+    /// The result of an operation with this error.
     fn new(value: DoubleDouble, error: f64) -> Self {
         Self { value, error: (error + LOST * value.high.abs()) * RAISED }
     }
@@ -36,7 +36,7 @@ impl Bounded {
     pub fn bounds(self) -> [f64; 2] {
         let DoubleDouble { high, low } = self.value;
         let wide = self.error + low.abs() + f64::EPSILON * high.abs();
-        // Where the low part and the error are less than half a unit in the last place, the next numbers are bounds.
+        // If the low part and the error are less than half a unit in the last place, the next numbers are bounds.
         if wide.is_finite() { [high - wide, high + wide] } else { [f64::NEG_INFINITY, f64::INFINITY] }
     }
 
@@ -120,7 +120,7 @@ impl Div for Bounded {
         let quotient = Self { value: self.value / other.value, error: 0.0 };
         let least = (other.value.high.abs() - other.value.low.abs() - other.error) * (1.0 - 4.0 * f64::EPSILON);
         let error = (self.error + quotient.size() * other.error) / least + f64::MIN_POSITIVE;
-        // An error as large as the number that is divided by leaves nothing known.
+        // An error as large as the divisor leaves the quotient unknown.
         Self::new(quotient.value, if least > 0.0 { error } else { f64::INFINITY })
     }
 }

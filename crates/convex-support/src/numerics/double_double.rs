@@ -133,7 +133,7 @@ mod tests {
         // (1 + ε)² − 1 − 2ε = ε²
         let square = DoubleDouble::product(1.0 + f64::EPSILON, 1.0 + f64::EPSILON);
         assert_eq!((square - DoubleDouble::sum(1.0, 2.0 * f64::EPSILON)).value(), tiny);
-        // 1/3·3 = 1 to 106 bits
+        // (1/3)·3 = 1 to 106 bits
         let third = DoubleDouble::from(1.0) / 3.0.into();
         assert!((third * 3.0 - DoubleDouble::from(1.0)).value().abs() <= tiny, "{third:?}");
     }

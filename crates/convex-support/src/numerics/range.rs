@@ -24,8 +24,8 @@ pub fn comfortable_unit_of_length<S: Scalar>(largest: S) -> S {
     if is_comfortable(largest * largest) { S::ONE } else { power_of_two_below(largest) }
 }
 
-/// The largest power of two that is not above `value`, or the smallest normal one; 1 where `value` is not positive or
-/// not finite.
+/// The largest power of two that is not above `value`, or the smallest normal one; 1 if `value` is not positive or not
+/// finite.
 #[inline]
 pub fn power_of_two_below<S: Scalar>(value: S) -> S {
     if !(value > S::ZERO && value.is_finite()) {

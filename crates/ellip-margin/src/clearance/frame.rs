@@ -96,7 +96,7 @@ impl<V: Vector> Bound<V> for LinkFrame {
 pub(super) struct CoarseDistance {
     rows: [[Vec4; 3]; 3],
     from_center: [Vec4; 3],
-    /// What the numbers of the bodies are rounded by, beside what single precision is.
+    /// The rounding of the bodies' numbers, beside that of single precision.
     room: [Vec4; 3],
     unit: CoarseUnit,
 }
@@ -113,7 +113,7 @@ impl CoarseBound for CoarseDistance {
                     (along + (low + high), reach + (high - low).abs(), terms + low.abs() + high.abs());
             }
             let gap = along.abs() - reach - (terms * (16.0 * f32::EPSILON) + room);
-            // What is not a number says nothing.
+            // NaN proves nothing.
             squared += Vec4::select(gap.cmpgt(Vec4::ZERO), gap * gap, Vec4::ZERO);
         }
         squared.min(Vec4::MAX)

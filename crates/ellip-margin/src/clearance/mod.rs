@@ -55,7 +55,7 @@ pub struct Clearance<V: Vector> {
     /// The greatest semi-axis of each obstacle.
     radii: Vec<f64>,
     tree: Bvh<V>,
-    /// How far any point of any obstacle can have moved in all calls of `move_obstacles`.
+    /// The farthest that any point of any obstacle can have moved in all calls of `move_obstacles`.
     drift: f64,
     links: Vec<Seen<V>>,
     /// The pair of the last result.

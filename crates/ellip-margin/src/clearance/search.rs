@@ -23,7 +23,7 @@ pub(super) struct Count {
     pub(super) left_out: LeftOut,
 }
 
-/// One link's way through the tree.
+/// The search of the tree for one link.
 pub(super) struct Search<'f, V: Vector> {
     pub(super) frame: &'f LinkFrame,
     pub(super) least: Least<V>,
@@ -66,7 +66,7 @@ impl<V: Vector> Search<'_, V> {
         if met < obstacles.len() {
             self.nearest = self.nearest.min(reach(&self.least));
         }
-        // One that was solved before, and was not met again, counts as solved.
+        // An obstacle solved before, and not reached again, counts as solved.
         self.count.left_out.by_box += obstacles.len() - met - usize::from(self.solved.is_some());
     }
 

@@ -70,7 +70,7 @@ impl Mover {
         self.of(Self::Second, Self::First)
     }
 
-    /// Its place among ‖N‖, h₁, h₂.
+    /// Its index among ‖N‖, h₁, h₂.
     fn index(self) -> usize {
         self.of(1, 2)
     }
@@ -116,7 +116,7 @@ impl Form {
     }
 }
 
-/// What each coordinate of a pose changes, translations first; as many as a pose has, 3 in 2D.
+/// The changes by each coordinate of a pose, translations first; as many as a pose has, 3 in 2D.
 #[derive(Clone, Copy, Debug)]
 struct Rates {
     /// s.

@@ -177,7 +177,7 @@ compiled_once! {
         let closing = normal.dot(b.1.velocity(time, point) - a.1.velocity(time, point));
         let (a, b) = (at_time(a, time), at_time(b, time));
         let zero = V::Scalar::ZERO;
-        // They are as far apart as the target distance of the cast, which the hit does not know, or not at all.
+        // They are apart by the target distance of the cast, which the hit does not store, or touch.
         let size = a.core().size() + b.core().size();
         let gap = normal.dot(a.support(-normal) - b.support(normal));
         // A gap that was not asked for is the error of the time or of the normal.

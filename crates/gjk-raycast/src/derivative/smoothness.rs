@@ -67,7 +67,7 @@ impl<V: Vector> ClosestFeatures<V> {
         let is_held = match (self.joint(), self.spans) {
             (Some(DifferenceSpan::None), _) if V::DIM == 2 => stiffness.a > least,
             (Some(DifferenceSpan::None), _) => stiffness.least_eigenvalue() > least,
-            // Across an edge, or parallel ones.
+            // Across an edge, or parallel edges.
             (Some(DifferenceSpan::Edge(_, e)), _) | (None, [Span::Edge(e), Span::Edge(_)]) => {
                 V::DIM == 2 || is_stiff(turned_left(e))
             }

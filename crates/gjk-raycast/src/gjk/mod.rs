@@ -80,7 +80,7 @@ pub(crate) struct GjkOptions<V: Vector> {
 }
 
 impl<V: Vector> GjkOptions<V> {
-    /// All that can be known of the closest points, beginning with a direction.
+    /// Asks for the closest points to rounding, from a first direction.
     #[inline(always)]
     pub(crate) fn new(first: V, max_iterations: usize) -> Self {
         Self {
@@ -94,7 +94,7 @@ impl<V: Vector> GjkOptions<V> {
     }
 }
 
-/// The direction to look along first: an axis that somebody knows, or from one origin to the other.
+/// The first direction: the axis of an earlier query, or from one origin to the other.
 #[inline(always)]
 pub(crate) fn first_direction<V: Vector>(axis: Option<V>, offset: V) -> V {
     axis.and_then(moderate).or_else(|| moderate(offset)).unwrap_or_else(|| Vector::axis(0))

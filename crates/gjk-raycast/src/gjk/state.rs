@@ -58,8 +58,8 @@ impl<V: Vector> Gjk<V> {
         self.length <= frame.touching()
     }
 
-    /// Begins at the closest points of the cores of a pair of the given size, where those are known in closed form:
-    /// whether the bodies meet there, to rounding. `None` where they are not known, and the state is as it was.
+    /// Begins at the closest points of the cores of a pair of the given size, if they have a closed form: whether the
+    /// bodies meet there, to rounding. `None` if they have none; the state is then unchanged.
     #[inline(always)]
     pub(crate) fn begin_at_closest(
         &mut self,
@@ -71,8 +71,7 @@ impl<V: Vector> Gjk<V> {
         Some(self.begin_at(points.a - points.b + frame.offset, points, frame))
     }
 
-    /// The state at a face of the difference, of which `v` is the point closest to zero and is made of its corners with
-    /// these weights.
+    /// The state at a face of the difference: `v` is its point closest to zero, made of its corners with these weights.
     #[inline]
     pub(crate) fn at_face(
         corners: impl Iterator<Item = (V, PointPair<V>)>,

@@ -283,14 +283,14 @@ fn hit_of<H, V: Vector>(body: usize, cast: Cast<H, V>) -> Option<BodyHit<H, V::S
     Some(BodyHit { body, hit: outcome.hit()?, lower, upper, status })
 }
 
-/// A ray, with room for the rounding of its points: 32 ε of the source.
+/// The box of a ray, with room for the rounding of its points: 32 ε of the source.
 fn swept_point<V: Vector>(ray: Ray<V>) -> SweptBox<V> {
     let room = V::Scalar::from_f64(32.0) * V::Scalar::EPSILON * ray.source.abs().dot(V::ONE);
     SweptBox::new(V::splat(room), ray.source, ray.direction)
 }
 
-/// The box of a shape that moves, in the frame of the bodies, with room for the target distance. If a number of the
-/// shape is not finite, no body is left out and every single query reports it.
+/// The box of a moving shape, in the frame of the bodies, with room for the target distance. If a number of the shape
+/// is not finite, no body is left out and every single query reports it.
 fn swept_shape<A: SupportMap + ?Sized>(
     shape: &A,
     motion: Motion<A::Vector>,
