@@ -10,11 +10,9 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::free_interval::acceleration_if_free;
-use super::from_contact::{Base, Stage};
-use super::instant::{Approach, Instant, Limits, NEAR};
-use super::motion_cast::{MotionCastOptions, MotionIterate};
+use super::instant::{Approach, Base, Instant, Limits, NEAR, Stage};
 use super::trajectory::TurningPlane;
-use crate::{Impact, Miss, MotionCast, Outcome, StartInContact, Status};
+use crate::{Impact, Miss, MotionCast, MotionCastOptions, MotionIterate, Outcome, StartInContact, Status};
 
 /// Where to be when a contact is as near as can be told: its distance in units of what that may be wrong by.
 pub(super) const AIM: f64 = 1.5;
