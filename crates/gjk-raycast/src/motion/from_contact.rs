@@ -98,10 +98,12 @@ impl<V: Vector> Search<'_, V> {
 
     fn raise(&mut self, stage: Stage, level: V::Scalar) {
         let known = [Some(self.near), self.beyond, self.farther];
-        let [near, beyond, farther] = known.map(|there| there.map(|there| self.truly(there)));
+        let known = known.map(|there| there.map(|there| self.truly(there)));
         (self.base.stage, self.base.level) = (stage, level);
-        let [near, beyond, farther] = [near, beyond, farther].map(|there| there.map(|there| self.measured(there)));
-        (self.near, self.beyond, self.farther) = (near.unwrap_or(self.near), beyond, farther);
+        let [near, beyond, farther] = known.map(|there| there.map(|there| self.measured(there)));
+        let near = near.unwrap_or(self.near);
+        self.before = self.before.above(self.near.distance - near.distance);
+        (self.near, self.beyond, self.farther) = (near, beyond, farther);
     }
 
     /// What is seen at a time, measured from the level.
@@ -141,7 +143,7 @@ impl<V: Vector> Search<'_, V> {
         }
         let Instant { time, upper, closing, .. } = self.truly(self.near);
         let out = upper / closing * V::Scalar::from_f64(OUT);
-        let step = self.step + self.step;
+        let step = self.step() + self.step();
         let step = if closing < V::Scalar::ZERO && out < step { out } else { step };
         // Of no step at all, the next number.
         if next > time + step && time + step > time { time + step } else { next }
@@ -154,7 +156,7 @@ impl<V: Vector> Search<'_, V> {
         let left = self.options.max_iterations.saturating_sub(self.looks);
         self.looks > LONG
             && matches!(self.base.stage, Stage::Touching | Stage::Deep)
-            && self.step * V::Scalar::from_f64(left as f64) < rest
+            && self.step() * V::Scalar::from_f64(left as f64) < rest
     }
 
     /// Up to when nothing that counts has happened: the bodies may have sunk by less than the slack from the start on.

@@ -14,8 +14,8 @@ use super::result::{
 use super::{Among, Body};
 use crate::motion::{check, checked};
 use crate::{
-    ChainMotion, Impact, LinearCast, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCast, RayCastError,
-    RayCastOptions, RayHit, RigidMotion, Status, Trajectory,
+    Cast, ChainMotion, Impact, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastError, RayCastOptions, RayHit,
+    RigidMotion, Trajectory,
 };
 
 impl<S: SupportMap> Among<'_, S> {
@@ -29,7 +29,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: RayCastOptions<S::Vector>,
     ) -> Result<SceneRayCast<S::Vector>, RayCastError> {
         ray.check(&options)?;
-        self.first(&swept_point(ray), options.max_lambda, |body| Ok(body.ray_cast(ray, options)?.into()))
+        self.first(&swept_point(ray), options.max_lambda, |body| body.ray_cast(ray, options), |hit| hit.lambda)
     }
 
     /// All bodies that the ray hits, in the order of λ and then of their indices, into `hits`, which is emptied first.
@@ -43,8 +43,8 @@ impl<S: SupportMap> Among<'_, S> {
         hits: &mut Vec<BodyHit<RayHit<S::Vector>, ScalarOf<S>>>,
     ) -> Result<SceneHits, RayCastError> {
         ray.check(&options)?;
-        let ask = |body: &Body<S>| Ok(body.ray_cast(ray, options)?.into());
-        self.all_hits(&swept_point(ray), options.max_lambda, hits, |hit| hit.lambda, ask)
+        let ask = |body: &Body<S>| body.ray_cast(ray, options);
+        self.all_hits(&swept_point(ray), options.max_lambda, hits, ask, |hit| hit.lambda)
     }
 
     /// [`ray_cast`](Self::ray_cast) for each of many rays, on all threads of the current [rayon](https://docs.rs/rayon)
@@ -100,7 +100,7 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<SceneLinearCast<S::Vector>, RayCastError> {
         motion.check(&options)?;
         let swept = swept_shape(shape, motion, &options);
-        self.first(&swept, options.max_time, |body| Ok(body.linear_cast(shape, motion, options)?.into()))
+        self.first(&swept, options.max_time, |body| body.linear_cast(shape, motion, options), |hit| hit.time)
     }
 
     /// All bodies that the moving shape meets, in the order of the time and then of their indices, into `hits`, which
@@ -131,8 +131,8 @@ impl<S: SupportMap> Among<'_, S> {
         hits: &mut Vec<BodyHit<Impact<S::Vector>, ScalarOf<S>>>,
     ) -> Result<SceneHits, RayCastError> {
         motion.check(&options)?;
-        let ask = |body: &Body<S>| Ok(body.linear_cast(shape, motion, options)?.into());
-        self.all_hits(&swept_shape(shape, motion, &options), options.max_time, hits, |hit| hit.time, ask)
+        let ask = |body: &Body<S>| body.linear_cast(shape, motion, options);
+        self.all_hits(&swept_shape(shape, motion, &options), options.max_time, hits, ask, |hit| hit.time)
     }
 
     /// The first body that a shape meets as it moves and turns among bodies at rest: the least time of
@@ -166,9 +166,8 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<SceneMotionCast<S::Vector>, RayCastError> {
         check("motion", &motion)?;
         let options = checked(options)?;
-        self.first(&MovingBalls::new(shape, &motion, &options), options.max_time, |body| {
-            Ok(body.motion_cast(shape, &motion, options, |_| {})?.into())
-        })
+        let balls = MovingBalls::new(shape, &motion, &options);
+        self.first(&balls, options.max_time, |body| body.motion_cast(shape, &motion, options, |_| {}), |hit| hit.time)
     }
 
     /// The first body that a shape meets as both move: the bodies all by one rigid motion, such as what rides on a
@@ -206,9 +205,9 @@ impl<S: SupportMap> Among<'_, S> {
         check("of_bodies", &of_bodies)?;
         let options = checked(options)?;
         let seen = seen_from(of_bodies, motion);
-        self.first(&MovingBalls::new(shape, &ChainMotion::new(&seen), &options), options.max_time, |body| {
-            Ok(body.motion_cast_of_both(shape, motion, of_bodies, options)?.into())
-        })
+        let balls = MovingBalls::new(shape, &ChainMotion::new(&seen), &options);
+        let ask = |body: &Body<S>| body.motion_cast_of_both(shape, motion, of_bodies, options);
+        self.first(&balls, options.max_time, ask, |hit| hit.time)
     }
 
     /// All hits of bodies that `bound` does not leave out, in the order of their λ or time and then of their indices.
@@ -217,17 +216,17 @@ impl<S: SupportMap> Among<'_, S> {
         bound: &B,
         end: ScalarOf<S>,
         hits: &mut Vec<BodyHit<H, ScalarOf<S>>>,
+        ask: impl Fn(&Body<S>) -> Result<Cast<H, S::Vector>, RayCastError>,
         value: impl Fn(&H) -> ScalarOf<S>,
-        ask: impl Fn(&Body<S>) -> Result<SingleAnswer<H, ScalarOf<S>>, RayCastError>,
     ) -> Result<SceneHits, RayCastError> {
         let hits = reuse(hits);
         let mut undecided = None;
         let work = self.in_order(bound, end, |index, _, body| {
-            let single = ask(body)?;
-            if single.is_undecided {
+            let cast = ask(body)?;
+            if cast.outcome.is_undecided() {
                 undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
             }
-            hits.extend(single.of(index));
+            hits.extend(BodyHit::of(index, &cast));
             Ok(ControlFlow::Continue((end, usize::MAX)))
         })?;
         hits.sort_unstable_by(|p, q| {
@@ -246,24 +245,25 @@ impl<S: SupportMap> Among<'_, S> {
         &self,
         bound: &B,
         end: ScalarOf<S>,
-        ask: impl Fn(&Body<S>) -> Result<SingleAnswer<H, ScalarOf<S>>, RayCastError>,
+        ask: impl Fn(&Body<S>) -> Result<Cast<H, S::Vector>, RayCastError>,
+        value: impl Fn(&H) -> ScalarOf<S>,
     ) -> Result<SceneCast<H, ScalarOf<S>>, RayCastError> {
         // The least key, with the hit; and where an undecided body may be hit at the earliest, and which.
         let (mut first, mut open) = (None::<(_, BodyHit<H, ScalarOf<S>>)>, None);
         let mut lower = ScalarOf::<S>::infinity();
         let work = self.in_order(bound, end, |index, from, body| {
-            let single = ask(body)?;
-            let start = (Float::max(single.lower, from), index);
-            if single.is_undecided || single.hit.is_some() {
+            let cast = ask(body)?;
+            let start = (Float::max(cast.lower, from), index);
+            if !cast.outcome.is_miss() {
                 lower = Float::min(lower, start.0);
             }
-            if single.is_undecided && open.is_none_or(|open| start < open) {
+            if cast.outcome.is_undecided() && open.is_none_or(|open| start < open) {
                 open = Some(start);
             }
-            if let Some((value, _)) = single.hit {
-                let key = (Float::max(value, from), index);
+            if let Some(hit) = BodyHit::of(index, &cast) {
+                let key = (Float::max(value(&hit.hit), from), index);
                 if first.is_none_or(|(least, _)| key < least) {
-                    first = single.of(index).map(|hit| (key, hit));
+                    first = Some((key, hit));
                 }
             }
             Ok(ControlFlow::Continue(first.map_or((end, usize::MAX), |(key, _)| key)))
@@ -271,38 +271,6 @@ impl<S: SupportMap> Among<'_, S> {
         let undecided = open.filter(|&open| first.is_none_or(|(key, _)| open < key)).map(|(_, body)| body);
         let lower = if work.cancelled { Scalar::ZERO } else { lower };
         Ok(SceneCast { first: first.map(|(_, hit)| hit), lower, undecided, work })
-    }
-}
-
-/// The answer of one cast: `H` is a hit, `S` its λ or time.
-struct SingleAnswer<H, S> {
-    /// The hit, with its λ or time.
-    hit: Option<(S, H)>,
-    is_undecided: bool,
-    lower: S,
-    upper: S,
-    status: Status,
-}
-
-impl<H, S: Scalar> SingleAnswer<H, S> {
-    /// The hit as that of a body.
-    fn of(self, body: usize) -> Option<BodyHit<H, S>> {
-        let Self { hit, lower, upper, status, .. } = self;
-        hit.map(|(_, hit)| BodyHit { body, hit, lower, upper, status })
-    }
-}
-
-impl<V: Vector> From<RayCast<V>> for SingleAnswer<RayHit<V>, V::Scalar> {
-    fn from(RayCast { outcome, lower, upper, status, .. }: RayCast<V>) -> Self {
-        let is_undecided = outcome.is_undecided();
-        Self { hit: outcome.hit().map(|hit| (hit.lambda, hit)), is_undecided, lower, upper, status }
-    }
-}
-
-impl<V: Vector> From<LinearCast<V>> for SingleAnswer<Impact<V>, V::Scalar> {
-    fn from(LinearCast { outcome, lower, upper, status, .. }: LinearCast<V>) -> Self {
-        let is_undecided = outcome.is_undecided();
-        Self { hit: outcome.hit().map(|hit| (hit.time, hit)), is_undecided, lower, upper, status }
     }
 }
 
