@@ -28,7 +28,9 @@ macro_rules! setters {
         $(setters! { @ $with($argument: $Type) $($field = $value;)? $argument = $argument; })*
     };
     (@ $with:ident($argument:ident: $Type:ty) $field:ident = $value:expr; $($rest:tt)*) => {
-        #[doc = concat!("With [`", stringify!($field), "`](Self::", stringify!($field), ") set to `", stringify!($value), "`.")]
+        #[doc = concat!(
+            "With [`", stringify!($field), "`](Self::", stringify!($field), ") set to `", stringify!($value), "`."
+        )]
         #[must_use]
         pub const fn $with(mut self, $argument: $Type) -> Self {
             self.$field = $value;

@@ -1,4 +1,5 @@
-//! What the search for a first contact asks of two moving bodies, and what is known of them at one time.
+//! What the search for a first contact asks of two moving bodies, what is known of them at one time, and from which
+//! level their distances are measured.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;

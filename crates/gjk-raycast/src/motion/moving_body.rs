@@ -1,4 +1,4 @@
-//! A body and its motion.
+//! A body and its motion, and what of a box does not change as it moves.
 
 use convex_support::{AngularVelocity, BoundingSphere, Core, CoreKind, Matrix, Parallelotope, Scalar, Spin, Vector};
 use num_traits::Float;

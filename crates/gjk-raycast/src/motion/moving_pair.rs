@@ -1,4 +1,4 @@
-//! Two bodies and their motions.
+//! Two bodies and their motions, and the table of what a search for their contact does beyond its leanest form.
 
 use core::cell::{Cell, RefCell};
 

@@ -1,4 +1,4 @@
-//! Shapes somewhere on their way, and two moving bodies where they are at a time.
+//! Shapes somewhere on their way, two moving bodies where they are at a time, and the corners that are closest there.
 
 use core::cell::Cell;
 
