@@ -13,6 +13,12 @@ pub(crate) fn array<V: Vector>(v: V) -> Vec3 {
     core::array::from_fn(|i| if i < V::DIM { v.get(i).as_f64() } else { 0.0 })
 }
 
+/// Coordinates in the precision of the bodies.
+#[inline]
+pub(crate) fn vector<V: Vector>(v: Vec3) -> V {
+    V::from_fn(|i| V::Scalar::from_f64(v[i]))
+}
+
 #[inline(always)]
 pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

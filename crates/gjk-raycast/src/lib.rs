@@ -193,12 +193,11 @@ pub use linkage::{
     PathContact, PathWork, PathWorkspace,
 };
 pub use motion::{
-    ChainMotion, Displacement, MotionCastOptions, MotionIterate, MovingBall, Pose, RigidMotion, Trajectory,
-    TurningPlane, motion_cast, motion_cast_with,
+    ChainMotion, Displacement, MovingBall, Pose, RigidMotion, Trajectory, TurningPlane, motion_cast, motion_cast_with,
 };
 pub use options::{
-    CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, RayCastOptions, SignedDistanceOptions,
-    StartInContact,
+    CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, MotionCastOptions, RayCastOptions,
+    SignedDistanceOptions, StartInContact,
 };
 pub use ray::{Motion, Ray};
 pub use ray_cast::{ray_cast, ray_cast_with};
@@ -207,8 +206,8 @@ pub use ray_casts::par_ray_casts;
 pub use ray_casts::{RayEntry, ray_casts, ray_entries_into};
 pub use ray_exit::ray_exit;
 pub use result::{
-    Cast, Distance, Impact, Intersection, Iterate, LinearCast, Miss, MotionCast, Outcome, RayCast, RayExit, RayHit,
-    SignedDistance, Status,
+    Cast, Distance, Impact, Intersection, Iterate, LinearCast, Miss, MotionCast, MotionIterate, Outcome, RayCast,
+    RayExit, RayHit, SignedDistance, Status,
 };
 pub use scene::{
     Among, Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, Scene, SceneAnyHit,

@@ -6,6 +6,7 @@ use num_traits::Float as _;
 use crate::cast::Quicker;
 use crate::extra::Extra;
 use crate::linear_cast::AtStart;
+use crate::motion::FullMotion;
 use crate::separation::Closer;
 use crate::{SubAlgorithm, WarmStart};
 
@@ -17,78 +18,26 @@ const MAX_ITERATIONS: usize = 200;
 /// The cap bounds the time for ties, such as an ellipsoid of revolution within another about the same axis.
 const MAX_DEPTH_ITERATIONS: usize = 500;
 
-/// The methods `with_…` for the fields of options.
-macro_rules! setters {
-    ($($field:ident),*) => { $(setters! { @ $field })* };
-    (@ tolerance) => {
-        setters! { with_tolerance(tolerance: V::Scalar), "With another [`tolerance`](Self::tolerance)." }
-    };
-    (@ max_iterations) => {
-        setters! {
-            with_max_iterations(max_iterations: usize), "With another cap on the [iterations](Self::max_iterations)."
-        }
-    };
-    (@ axis) => {
-        /// With a first [`axis`](Self::axis).
-        #[must_use]
-        pub const fn with_axis(mut self, axis: V) -> Self {
-            self.axis = Some(axis);
-            self
-        }
-    };
-    (@ warm_start) => {
-        setters! {
-            with_warm_start(warm_start: Option<WarmStart<V>>),
-            "With what the last frame [tells](Self::warm_start), if there was one."
-        }
+/// Times to examine in a motion cast, after which to give up. A contact takes about ten, and each turn near another body
+/// about as many; bodies that spin for long very near one another take the most.
+const MAX_LOOKS: usize = 10_000;
 
-        /// With a [first axis](WarmStart::new).
+/// The methods `with_…` of options. Each sets the field of its argument's name, unless another field is given.
+macro_rules! setters {
+    ($($with:ident($argument:ident: $Type:ty $(=> $field:ident = $value:expr)?)),*) => {
+        $(setters! { @ $with($argument: $Type) $($field = $value;)? $argument = $argument; })*
+    };
+    (@ $with:ident($argument:ident: $Type:ty) $field:ident = $value:expr; $($rest:tt)*) => {
+        #[doc = concat!(
+            "With [`", stringify!($field), "`](Self::", stringify!($field), ") set to `", stringify!($value), "`."
+        )]
         #[must_use]
-        pub const fn with_axis(self, axis: V) -> Self {
-            self.with_warm_start(Some(WarmStart::new(axis)))
-        }
-    };
-    (@ limit) => { setters! { with_limit(limit: V::Scalar), "With a [`limit`](Self::limit)." } };
-    (@ depth_limit) => {
-        setters! { with_depth_limit(depth_limit: V::Scalar), "With a [`depth_limit`](Self::depth_limit)." }
-    };
-    (@ min_lambda) => {
-        setters! {
-            with_min_lambda(min_lambda: V::Scalar), "With a [beginning of the ray](Self::min_lambda) beyond its source."
-        }
-    };
-    (@ max_lambda) => {
-        setters! { with_max_lambda(max_lambda: V::Scalar), "With an [end of the ray](Self::max_lambda)." }
-    };
-    (@ max_time) => { setters! { with_max_time(max_time: V::Scalar), "With an [end of the motion](Self::max_time)." } };
-    (@ target_distance) => {
-        setters! {
-            with_target_distance(target_distance: V::Scalar), "With a [`target_distance`](Self::target_distance)."
-        }
-    };
-    (@ start_in_contact) => {
-        setters! {
-            with_start_in_contact(start_in_contact: $crate::StartInContact),
-            "With another answer where the shapes [touch at the start](Self::start_in_contact)."
-        }
-    };
-    (@ sub_algorithm) => {
-        setters! {
-            with_sub_algorithm(sub_algorithm: SubAlgorithm), "With another [`sub_algorithm`](Self::sub_algorithm)."
-        }
-    };
-    (@ method) => { setters! { with_method(method: CastMethod), "With another [`method`](Self::method)." } };
-    ($with:ident($field:ident: $Type:ty), $doc:literal) => {
-        #[doc = $doc]
-        #[must_use]
-        pub const fn $with(mut self, $field: $Type) -> Self {
-            self.$field = $field;
+        pub const fn $with(mut self, $argument: $Type) -> Self {
+            self.$field = $value;
             self
         }
     };
 }
-
-pub(crate) use setters;
 
 /// Implements `Default` by `new`.
 macro_rules! new_by_default {
@@ -101,9 +50,8 @@ macro_rules! new_by_default {
     )*};
 }
 
-pub(crate) use new_by_default;
-
-new_by_default!(DistanceOptions, SignedDistanceOptions, IntersectOptions, RayCastOptions, LinearCastOptions);
+new_by_default!(DistanceOptions, SignedDistanceOptions, IntersectOptions);
+new_by_default!(RayCastOptions, LinearCastOptions, MotionCastOptions);
 
 /// Options of [`distance`](crate::distance).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -155,7 +103,10 @@ impl<V: Vector> DistanceOptions<V> {
         }
     }
 
-    setters!(limit, tolerance, max_iterations, axis, sub_algorithm);
+    setters! {
+        with_limit(limit: V::Scalar), with_tolerance(tolerance: V::Scalar), with_max_iterations(max_iterations: usize),
+        with_axis(axis: V => axis = Some(axis)), with_sub_algorithm(sub_algorithm: SubAlgorithm)
+    }
 }
 
 /// Options of [`signed_distance`](crate::signed_distance).
@@ -195,7 +146,10 @@ impl<V: Vector> SignedDistanceOptions<V> {
         }
     }
 
-    setters!(tolerance, limit, depth_limit, max_iterations, axis);
+    setters! {
+        with_tolerance(tolerance: V::Scalar), with_limit(limit: V::Scalar), with_depth_limit(depth_limit: V::Scalar),
+        with_max_iterations(max_iterations: usize), with_axis(axis: V => axis = Some(axis))
+    }
 }
 
 /// Options of [`intersects`](crate::intersects).
@@ -220,7 +174,10 @@ impl<V: Vector> IntersectOptions<V> {
         Self { max_iterations: MAX_ITERATIONS, axis: None, sub_algorithm: SubAlgorithm::Regions }
     }
 
-    setters!(max_iterations, axis, sub_algorithm);
+    setters! {
+        with_max_iterations(max_iterations: usize), with_axis(axis: V => axis = Some(axis)),
+        with_sub_algorithm(sub_algorithm: SubAlgorithm)
+    }
 }
 
 /// How a cast finds the planes that bound its hit. Every method computes the bounds in the same way, so that the
@@ -320,7 +277,13 @@ impl<V: Vector> RayCastOptions<V> {
         }
     }
 
-    setters!(min_lambda, max_lambda, tolerance, max_iterations, warm_start, sub_algorithm, method);
+    setters! {
+        with_min_lambda(min_lambda: V::Scalar), with_max_lambda(max_lambda: V::Scalar),
+        with_tolerance(tolerance: V::Scalar), with_max_iterations(max_iterations: usize),
+        with_warm_start(warm_start: Option<WarmStart<V>>),
+        with_axis(axis: V => warm_start = Some(WarmStart::new(axis))), with_sub_algorithm(sub_algorithm: SubAlgorithm),
+        with_method(method: CastMethod)
+    }
 }
 
 /// Options of [`linear_cast`](crate::linear_cast).
@@ -385,5 +348,89 @@ impl<V: Vector> LinearCastOptions<V> {
         }
     }
 
-    setters!(max_time, target_distance, start_in_contact, tolerance, max_iterations, warm_start, sub_algorithm, method);
+    setters! {
+        with_max_time(max_time: V::Scalar), with_target_distance(target_distance: V::Scalar),
+        with_start_in_contact(start_in_contact: StartInContact), with_tolerance(tolerance: V::Scalar),
+        with_max_iterations(max_iterations: usize), with_warm_start(warm_start: Option<WarmStart<V>>),
+        with_axis(axis: V => warm_start = Some(WarmStart::new(axis))), with_sub_algorithm(sub_algorithm: SubAlgorithm),
+        with_method(method: CastMethod)
+    }
+}
+
+/// Options of [`motion_cast`](crate::motion_cast).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct MotionCastOptions<V: Vector> {
+    /// The end of the motion; it belongs to the motion. A negative value is taken for zero. Default: infinity. Set an
+    /// end if a body spins: no finite search can prove that a spinning body never touches another one, and the answer
+    /// is undecided after [`max_iterations`](Self::max_iterations).
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub max_time: V::Scalar,
+    /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
+    /// of rounding always ends the search. Default: 0.
+    pub tolerance: V::Scalar,
+    /// The distance at which bodies count as touching: the cast stops that far from contact. A negative value is taken
+    /// for zero. Default: 0.
+    pub target_distance: V::Scalar,
+    /// What to answer if the bodies touch at the start. Default: [`StartInContact::Report`].
+    pub start_in_contact: StartInContact,
+    /// A first guess of the direction from `b` to `a` at the start, such as the axis of the last miss. Default: none.
+    pub axis: Option<V>,
+    /// The number of times to examine, after which to give up; each takes a few support points, which
+    /// [`MotionCast::iterations`](crate::MotionCast::iterations) counts. Default: 10 000.
+    pub max_iterations: usize,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) extra: Extra<FullMotion<V>>,
+}
+
+impl<V: Vector> MotionCastOptions<V> {
+    /// The default options.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { extra: FullMotion::named(), ..Self::lean() }
+    }
+
+    /// The default options, with no machine code besides GJK, closed forms, and the closest points of the last time: a
+    /// program in which all options are lean has a third of the code for motion casts.
+    ///
+    /// The search then does without the shortest way out of an overlap, the facets of two boxes, the proof that bodies
+    /// without an inside have passed through one another, and the linear cast, so that motions that do not turn are
+    /// searched like those that do. It takes more support points, the bracket may be wider, and a contact that is not
+    /// certain, or a graze, may be undecided where the default options decide. With [`StartInContact::IfDeeper`], a
+    /// start that may be in contact may be undecided too.
+    #[must_use]
+    pub fn lean() -> Self {
+        Self {
+            max_time: V::Scalar::infinity(),
+            tolerance: V::Scalar::ZERO,
+            target_distance: V::Scalar::ZERO,
+            start_in_contact: StartInContact::Report,
+            axis: None,
+            max_iterations: MAX_LOOKS,
+            extra: Extra::NONE,
+        }
+    }
+
+    setters! {
+        with_max_time(max_time: V::Scalar), with_tolerance(tolerance: V::Scalar),
+        with_target_distance(target_distance: V::Scalar), with_start_in_contact(start_in_contact: StartInContact),
+        with_axis(axis: V => axis = Some(axis)), with_max_iterations(max_iterations: usize)
+    }
+
+    /// The same for a motion that does not turn, but for what they name.
+    pub(crate) fn straight(&self) -> LinearCastOptions<V> {
+        let &Self { max_time, tolerance, target_distance, start_in_contact, axis, max_iterations, .. } = self;
+        let warm_start = axis.map(WarmStart::new);
+        LinearCastOptions {
+            max_time,
+            tolerance,
+            target_distance,
+            start_in_contact,
+            warm_start,
+            max_iterations,
+            ..LinearCastOptions::lean()
+        }
+    }
 }

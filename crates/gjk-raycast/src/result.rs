@@ -395,3 +395,20 @@ impl<V: Vector> Iterate<'_, V> {
         if gap > V::Scalar::ZERO { gap } else { V::Scalar::ZERO }
     }
 }
+
+/// The state of a motion cast that an observer sees at every time examined.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionIterate<V: Vector> {
+    /// Counts from 0.
+    pub iteration: usize,
+    /// The time examined.
+    pub time: V::Scalar,
+    /// The certain distance of a separating plane between the bodies then; not positive if none is known.
+    pub gap: V::Scalar,
+    /// The unit normal of that plane, from `b` to `a`.
+    pub normal: V,
+    /// The bodies have no point in common up to this time.
+    pub lower: V::Scalar,
+    /// The bodies have a point in common at this time; infinite if none is known.
+    pub upper: V::Scalar,
+}

@@ -9,7 +9,7 @@ use convex_support::{
 };
 use gjk_raycast::{
     Body, HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, Met, MotionCastOptions, Path,
-    PathContact, PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
+    PathContact, PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, Status, signed_distance,
 };
 
 type Bar = Rounded<Segment<DVec2>>;
@@ -140,6 +140,36 @@ fn a_joint_slides_along_its_axis() -> Result<(), Box<dyn std::error::Error>> {
     );
     assert!((hit.point - DVec3::new(3.0, 1.0, 0.0)).length() < 1e-13, "{contact:?}");
     Ok(())
+}
+
+/// A path is undecided, neither free nor in contact, from where a search was cut short, or where only rounding decides: a
+/// ball that the hand grazes in the middle of an edge. What is certainly met counts if it is met before that.
+#[test]
+fn a_path_is_undecided_from_where_a_cast_is() {
+    let (robot, ways) = (arm(), [vec![0.0, 0.0], vec![2.0, 0.0]]);
+    let at = |far: f64, angle: f64| ball_at(far * angle.cos(), far * angle.sin());
+    let (grazed, before, after) = (at(2.15, 1.0), at(1.5, 0.5), at(1.5, 1.8));
+    let first_of = |bodies: &[Posed<Ball<DVec2>>]| ask(&robot, &ways, &Scene::new(bodies.to_vec()).expect("finite"));
+    for bodies in [&[grazed][..], &[grazed, after], &[after, grazed]] {
+        let path = first_of(bodies);
+        let first = path.first.expect("it may touch");
+        assert!(first.cast.outcome.is_undecided() && path.contact().is_none() && !path.is_free(), "{path:?}");
+        assert_eq!(Some(first.met), bodies.iter().position(|body| *body == grazed).map(Met::Obstacle), "{path:?}");
+        assert!((first.cast.lower - 0.5).abs() < 1e-6, "the time of the graze: {path:?}");
+    }
+    for (bodies, index) in [([grazed, before], 1), ([before, grazed], 0)] {
+        let path = first_of(&bodies);
+        assert!(path.contact().is_some_and(|(it, hit)| it.met == Met::Obstacle(index) && hit.time < 0.25), "{path:?}");
+    }
+    let (scene, truth) = (Scene::new([before]).expect("finite"), (0.5 - (0.15_f64 / 1.5).asin()) / 2.0);
+    for (looks, is_cut) in [(0, true), (1, true), (3, true), (100, false)] {
+        let options = MotionCastOptions::new().with_max_iterations(looks);
+        let path = robot.path(&ways, &scene, options, &mut PathWorkspace::new()).expect("two values each");
+        let cast = path.first.expect("it is met").cast;
+        assert!(cast.lower <= truth && truth <= cast.upper, "{looks}: {path:?}");
+        let is_undecided = cast.status == Status::IterationLimit && path.contact().is_none() && !path.is_free();
+        assert_eq!(is_undecided, is_cut, "{looks}: {path:?}");
+    }
 }
 
 #[test]

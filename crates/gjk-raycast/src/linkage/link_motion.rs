@@ -10,7 +10,7 @@ use num_traits::Float as _;
 use super::frame::{LinkFrame, epsilons};
 use super::joint::{JointStage, Moving, Value};
 use crate::motion::Bounds;
-use crate::{Displacement, MovingBall, Trajectory, TurningPlane};
+use crate::{Displacement, Trajectory, TurningPlane};
 
 /// The moving joints on the way from one frame to a link, and the link's frame beyond the last of them.
 #[derive(Clone, Debug)]
@@ -195,17 +195,5 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
         let near = along + V::Scalar::from_f64(2.0) * turning + always * (frame.turn_error + epsilons(64.0));
         // NaN is no bound.
         if near < always { near } else { always }
-    }
-
-    /// The ball moves along the chord of the way of its centre, which that leaves by `s²/8` of its acceleration at
-    /// most.
-    fn moving_ball(&self, ball: BoundingSphere<V>, [from, to]: [V::Scalar; 2]) -> MovingBall<V> {
-        let duration = to - from;
-        let (_, frame) = self.at(to);
-        let [start, end] = [self.at(from).1, frame].map(|frame| frame.of(ball.center));
-        let sagitta = self.bounds.acceleration.of(self.route.distance(ball.center)) * duration * duration;
-        let error = frame.error_of(ball.center.norm());
-        let velocity = if duration > V::Scalar::ZERO { (end - start) / duration } else { V::ZERO };
-        MovingBall { start, velocity, radius: ball.radius + sagitta * V::Scalar::from_f64(0.125) + error + error }
     }
 }

@@ -75,8 +75,6 @@ pub(super) struct Skeleton<V: Vector> {
 /// A ball around each body of a link, in its own frame, and one around all of them.
 #[derive(Clone, Debug)]
 pub(super) struct LinkBalls<V: Vector> {
-    /// The last joint that moves it.
-    pub(super) stage: Option<usize>,
     pub(super) each: Vec<BoundingSphere<V>>,
     pub(super) all: BoundingSphere<V>,
 }
@@ -131,7 +129,7 @@ impl<S: SupportMap> Linkage<S> {
                 return Err(LinkageError::BodyNotFinite { link, body });
             }
             views.push(LinkView { link, base: None, route: Route::new(way, tail) });
-            balls.push(LinkBalls { stage, all: ball_around(&each), each });
+            balls.push(LinkBalls { all: ball_around(&each), each });
             all.push(bodies);
         }
         Ok(Self { skeleton: Skeleton { stages, links: balls, views }, bodies: all })

@@ -102,23 +102,26 @@ impl<S: SupportMap> Linkage<S> {
             let duration = if last > 0 { rest.min(Scalar::ONE) } else { Scalar::ZERO };
             let [from, to] = [index, last.min(index + 1)].map(|waypoint| waypoints[waypoint].as_ref());
             let edge = PathEdge { from, to };
-            let mut first = First::<S::Vector> { edge: index, contact: None, stop: None };
+            let mut first: Option<PathContact<S::Vector>> = None;
             let (skeleton, tree, space) = (&self.skeleton, scene.tree(), &mut *workspace);
             let mut sweep = Sweep { skeleton, tree, edge, target, space, end: duration, parts: 0 };
             sweep.run(&mut |near, motion| {
                 work.casts += 1;
                 let options = options.with_max_time(duration);
-                if let Some(base) = self.skeleton.views[near.view].base {
+                let next = if let Some(base) = self.skeleton.views[near.view].base {
                     let base = Body::Convex(&self.bodies[base][near.other]);
-                    self.cast(near, motion, (&base, None), options, &mut first, &mut observer)?;
+                    self.cast(index, near, &motion, (&base, None), options, &mut observer)?
                 } else if let Some(obstacle) = scene.get(near.other) {
                     let at = scene.tree().get(near.other).map(|around| around.center());
-                    self.cast(near, motion, (obstacle, at), options, &mut first, &mut observer)?;
-                }
-                Ok(first.end(duration))
+                    self.cast(index, near, &motion, (obstacle, at), options, &mut observer)?
+                } else {
+                    None
+                };
+                first = first_of(first, next);
+                Ok(first.map_or(duration, |first| duration.min(end_of(&first.cast))))
             })?;
             work.parts += sweep.parts;
-            let found = open.map_or(first.of_both(), |open| Some(first.goes_on(open)));
+            let found = open.map_or(first, |open| Some(goes_on(open, first)));
             // What rounding leaves open at a waypoint, the next edge may decide.
             let may_go_on = open.is_none() && index + 1 < last && rest > Scalar::ONE;
             if may_go_on && found.is_some_and(|found| is_open_at_end(&found)) {
@@ -130,16 +133,16 @@ impl<S: SupportMap> Linkage<S> {
         Ok(Path { first: None, work })
     }
 
-    /// Casts a body against the bodies that may come near it.
+    /// Casts a body against the bodies that may come near it on an edge; `None` for a miss.
     fn cast<O: SupportMap<Vector = S::Vector>>(
         &self,
+        edge: usize,
         near: &Near<ScalarOf<S>>,
-        motion: LinkMotion<'_, S::Vector>,
+        motion: &LinkMotion<'_, S::Vector>,
         (against, at): (&Body<O>, Option<S::Vector>),
         options: MotionCastOptions<S::Vector>,
-        first: &mut First<S::Vector>,
         observer: &mut Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
-    ) -> Result<(), RayCastError> {
+    ) -> Result<Option<PathContact<S::Vector>>, RayCastError> {
         let &Near { from, to, view, body, other } = near;
         let LinkView { link, base, .. } = self.skeleton.views[view];
         let shape = &self.bodies[link][body];
@@ -152,11 +155,11 @@ impl<S: SupportMap> Linkage<S> {
             let mut show = |[start, end]: [ScalarOf<S>; 2], normals| {
                 if let Some(observer) = observer {
                     let (from, to) = (from + start, from + end);
-                    observer(FreeInterval { edge: first.edge, from, to, link, body, met, normals });
+                    observer(FreeInterval { edge, from, to, link, body, met, normals });
                 }
             };
             let options = MotionCastOptions { axis, max_time: end, ..options };
-            let answer = against.motion_cast(shape, &motion, options, |there| steps.see(&there, &mut show))?;
+            let answer = against.motion_cast(shape, motion, options, |there| steps.see(&there, &mut show))?;
             steps.end(&answer, show);
             Ok::<_, RayCastError>(answer)
         };
@@ -167,78 +170,55 @@ impl<S: SupportMap> Linkage<S> {
         if !cast.is_certain() && to - from < whole {
             cast = cast_to(whole)?;
         }
-        if let (Outcome::Hit(hit), Some(base)) = (&mut cast.outcome, base) {
-            // It was seen from the second link.
-            let (_, frame) = motion.edge.place(&self.skeleton.views[base].route, from + hit.time);
-            (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
-        }
-        first.take(PathContact { edge: first.edge, link, body, met, cast }, from);
-        Ok(())
-    }
-}
-
-/// The first contact on an edge so far.
-struct First<V: Vector> {
-    edge: usize,
-    contact: Option<PathContact<V>>,
-    /// Where an undecided cast may be one.
-    stop: Option<PathContact<V>>,
-}
-
-impl<V: Vector> First<V> {
-    /// Takes the cast of a body from a time on. The first contact of all is bracketed by the least bounds of each. It
-    /// names the body that is certain first, which is the one met at the upper bound.
-    fn take(&mut self, mut next: PathContact<V>, from: V::Scalar) {
         // The sum with a start is rounded.
-        let room = if from == V::Scalar::ZERO { from } else { V::Scalar::EPSILON };
-        let cast = &mut next.cast;
+        let room = if from == Scalar::ZERO { from } else { Scalar::EPSILON };
         (cast.lower, cast.upper) = ((from + cast.lower - room).max(from), from + cast.upper + room);
-        match &mut cast.outcome {
-            Outcome::Miss(_) => {}
-            Outcome::Undecided => {
-                if self.stop.is_none_or(|stop| next.cast.lower < stop.cast.lower) {
-                    self.stop = Some(next);
-                }
+        if let Outcome::Hit(hit) = &mut cast.outcome {
+            if let Some(base) = base {
+                // It was seen from the second link.
+                let (_, frame) = motion.edge.place(&self.skeleton.views[base].route, from + hit.time);
+                (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
             }
-            Outcome::Hit(hit) => {
-                hit.time = (from + hit.time).min(cast.upper).max(cast.lower);
-                let when = |PathContact { cast, .. }: &PathContact<V>| match cast.outcome {
-                    Outcome::Hit(hit) if !cast.is_certain() => hit.time,
-                    _ => cast.upper,
-                };
-                let known = self.contact.unwrap_or(next);
-                let mut earlier = if when(&next) < when(&known) { next } else { known };
-                earlier.cast.lower = next.cast.lower.min(known.cast.lower);
-                earlier.cast.upper = next.cast.upper.min(known.cast.upper);
-                self.contact = Some(earlier);
-            }
+            hit.time = (from + hit.time).min(cast.upper).max(cast.lower);
         }
+        Ok((!cast.outcome.is_miss()).then_some(PathContact { edge, link, body, met, cast }))
     }
+}
 
-    /// The time from which on nothing matters.
-    fn end(&self, duration: V::Scalar) -> V::Scalar {
-        let [contact, stop] = [self.contact.map(|it| it.cast.upper), self.stop.map(|it| it.cast.lower)];
-        contact.into_iter().chain(stop).fold(duration, Float::min)
-    }
+/// The first of two contacts on an edge, certain or possible. The least bounds of both bracket it. It names the body
+/// whose contact is certain first, which is the one met at the upper bound.
+fn first_of<V: Vector>(known: Option<PathContact<V>>, next: Option<PathContact<V>>) -> Option<PathContact<V>> {
+    let (Some(known), Some(next)) = (known, next) else { return known.or(next) };
+    let (a, b) = (known.cast, next.cast);
+    let (lower, upper) = (a.lower.min(b.lower), a.upper.min(b.upper));
+    let (Outcome::Hit(_), Outcome::Hit(_)) = (a.outcome, b.outcome) else {
+        let is_next = b.lower < a.lower || b.lower == a.lower && a.outcome.is_undecided();
+        return Some(if is_next { next } else { known });
+    };
+    let when = |cast: MotionCast<V>| match cast.outcome {
+        Outcome::Hit(hit) if !cast.is_certain() => hit.time,
+        _ => cast.upper,
+    };
+    let earlier = if when(b) < when(a) { next } else { known };
+    Some(PathContact { cast: MotionCast { lower, upper, ..earlier.cast }, ..earlier })
+}
 
-    /// The contact at the end of the last edge, if that is [open](is_open_at_end) and this edge follows: if this edge
-    /// begins in contact, or comes to a contact at once, the contact is certain, at the waypoint.
-    fn goes_on(&self, open: PathContact<V>) -> PathContact<V> {
-        let is_at_once = |cast: &MotionCast<V>| cast.is_certain() && cast.upper < at_waypoint();
-        let Some(mut next) = self.of_both().filter(|next| is_at_once(&next.cast)) else { return open };
-        if let Outcome::Hit(hit) = &mut next.cast.outcome {
-            hit.time = Scalar::ONE;
-        }
-        (next.edge, next.cast.lower) = (open.edge, open.cast.lower);
-        next.cast.upper = V::Scalar::ONE + next.cast.upper + V::Scalar::EPSILON;
-        next
-    }
+/// The time after which no contact is the first: an undecided cast may meet a body at its lower bound already.
+fn end_of<V: Vector>(cast: &MotionCast<V>) -> V::Scalar {
+    if cast.outcome.is_undecided() { cast.lower } else { cast.upper }
+}
 
-    /// The first contact of both; `None` if the edge is free.
-    fn of_both(&self) -> Option<PathContact<V>> {
-        let is_first = |stop: &PathContact<V>| self.contact.is_none_or(|it| stop.cast.lower < it.cast.lower);
-        self.stop.filter(is_first).or(self.contact)
+/// The contact at the end of an edge, if that is [open](is_open_at_end) and `next` is the first contact on the next edge:
+/// if that edge begins in contact, or comes to a contact at once, the contact is certain, at the waypoint.
+fn goes_on<V: Vector>(open: PathContact<V>, next: Option<PathContact<V>>) -> PathContact<V> {
+    let is_at_once = |cast: &MotionCast<V>| cast.is_certain() && cast.upper < at_waypoint();
+    let Some(mut next) = next.filter(|next| is_at_once(&next.cast)) else { return open };
+    if let Outcome::Hit(hit) = &mut next.cast.outcome {
+        hit.time = Scalar::ONE;
     }
+    (next.edge, next.cast.lower) = (open.edge, open.cast.lower);
+    next.cast.upper = V::Scalar::ONE + next.cast.upper + V::Scalar::EPSILON;
+    next
 }
 
 /// How near the waypoint the end of an edge, or the beginning of the next, has to be. The time of a contact that is

@@ -166,7 +166,7 @@ impl<'s, V: Vector> Sweep<'s, V> {
         let placed = match base {
             Some(_) => self.edge.place(route, from + half),
             None => {
-                let moving = link.stage.map_or(Moving::WORLD, |stage| self.space.moving[stage]);
+                let moving = route.stages.last().map_or(Moving::WORLD, |stage| self.space.moving[stage.column]);
                 (moving, moving.frame.then(&route.tail))
             }
         };

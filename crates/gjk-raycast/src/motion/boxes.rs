@@ -21,23 +21,20 @@
 //! wrong by, the line through zero along the normal proves it: on one side of zero it goes through the facet, and on
 //! the other side it is within the difference.
 
-use convex_support::{Core, CoreKind, Hint, Parallelotope, Scalar, SupportMap as _, Vector};
+use convex_support::{Hint, Scalar, SupportMap as _, Vector};
 use num_traits::Float;
 
 use super::instant::{Instant, Limits, NEAR};
+use super::moving_body::Block;
 use super::moving_pair::MovingPair;
 use super::placed::{Moved, Placed};
-use crate::double::{LEAST, Vec3, array, cross, dot};
+use crate::double::{Vec3, array, cross, dot, vector};
 use crate::gjk::rounding;
 use crate::separation::{Uncertainty, slack};
-use crate::shape::Shape;
 use crate::unit::is_moderate;
 
 /// Edges of two boxes.
 const EDGES: usize = 6;
-
-/// The cosine of the angle between two edges of what is no box.
-const SKEW: f64 = 1e-6;
 
 /// The squared sine of the angle between edges whose facet is not looked at. It is a sliver, and what is beyond it is
 /// seen to be beyond others but for the sine times the shorter edge.
@@ -66,15 +63,6 @@ const LEVEL: f64 = 2.0;
 /// The same of a level from near, roughly.
 const FROM_NEAR: f64 = 0.5;
 
-/// A core that is a box, as its body starts: its centre relative to the body's origin, unit vectors along its edges,
-/// and half the lengths of these.
-#[derive(Clone, Copy)]
-pub(super) struct Block<V> {
-    center: V,
-    units: [V; 3],
-    halves: [f64; 3],
-}
-
 /// The difference of two boxes where they are at a time.
 struct Boxes {
     /// The centre of the second, relative to its body's origin, and the centre of the difference.
@@ -87,12 +75,9 @@ struct Boxes {
     halves: [f64; EDGES],
 }
 
-/// The two edges that span a facet.
-pub(super) type FacetEdges = [usize; 2];
-
 /// A facet of the difference of two boxes.
 struct BoxFacet {
-    span: FacetEdges,
+    span: [usize; 2],
     /// The unit vector across it, from the second box to the first.
     normal: Vec3,
     /// How far zero is beyond it.
@@ -189,29 +174,6 @@ impl<V: Vector> MovingPair<'_, V> {
     }
 }
 
-impl<V: Vector> Block<V> {
-    /// The core of a shape, if it is a box without a radius. In space it may be flat.
-    pub(super) fn of(shape: Shape<'_, V>, core: &Core<V>) -> Option<Self> {
-        if !matches!(core.kind, CoreKind::Polytope) || core.radius > Scalar::ZERO {
-            return None;
-        }
-        let Parallelotope { center, half_edges } = shape.core_parallelotope()?;
-        let mut edges = half_edges.map(array);
-        if V::DIM == 2 {
-            edges[2] = [0.0, 0.0, 1.0];
-        }
-        let squared = edges.map(|edge| dot(edge, edge));
-        let halves = squared.map(|squared| if squared > LEAST { Float::sqrt(squared) } else { 0.0 });
-        let mut units: [Vec3; 3] = core::array::from_fn(|i| edges[i].map(|x| x / halves[i]));
-        if let Some(i) = halves.iter().position(|&half| half == 0.0) {
-            units[i] = cross(&units[(i + 1) % 3], &units[(i + 2) % 3]);
-        }
-        // If another edge has no length either, this is NaN.
-        let is_box = (0..3).all(|i| dot(units[i], units[(i + 1) % 3]).abs() < SKEW);
-        is_box.then(|| Self { center, units: units.map(vector), halves })
-    }
-}
-
 impl Boxes {
     /// The boxes of two bodies, together of the given size, whose origins differ by `offset`.
     #[inline(always)]
@@ -252,7 +214,7 @@ impl Boxes {
 
     /// What spans the highest facet; `None` where edges are so nearly parallel that it may be one of theirs.
     #[inline(always)]
-    fn highest(&self) -> Option<FacetEdges> {
+    fn highest(&self) -> Option<[usize; 2]> {
         let (u, w) = ([self.unit(0), self.unit(1), self.unit(2)], [self.unit(3), self.unit(4), self.unit(5)]);
         let (h, k) = (&self.halves[..3], &self.halves[3..]);
         // In coordinates along the edges of the first.
@@ -300,7 +262,7 @@ impl Boxes {
 
     /// The facet that is spanned by two edges, on the side of zero.
     #[inline(always)]
-    fn facet(&self, span: FacetEdges) -> BoxFacet {
+    fn facet(&self, span: [usize; 2]) -> BoxFacet {
         let [i, j] = span;
         let Self { from, center, units: [x, y, z], halves } = self;
         let (first, second) = (self.unit(i), self.unit(j));
@@ -364,9 +326,4 @@ impl Boxes {
         }
         leaning
     }
-}
-
-/// Coordinates in the precision of the bodies.
-fn vector<V: Vector>(v: Vec3) -> V {
-    V::from_fn(|i| V::Scalar::from_f64(v[i]))
 }

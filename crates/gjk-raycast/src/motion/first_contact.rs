@@ -10,11 +10,9 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::free_interval::acceleration_if_free;
-use super::from_contact::{Base, Stage};
-use super::instant::{Approach, Instant, Limits, NEAR};
-use super::motion_cast::{MotionCastOptions, MotionIterate};
+use super::instant::{Approach, Base, Instant, Limits, NEAR, Stage};
 use super::trajectory::TurningPlane;
-use crate::{Impact, Miss, MotionCast, Outcome, StartInContact, Status};
+use crate::{Impact, Miss, MotionCast, MotionCastOptions, MotionIterate, Outcome, StartInContact, Status};
 
 /// Where to be when a contact is as near as can be told: its distance in units of what that may be wrong by.
 pub(super) const AIM: f64 = 1.5;
@@ -41,16 +39,10 @@ pub(super) struct Search<'p, V: Vector> {
     pub(super) base: Base<V::Scalar>,
     /// The last time up to which the bodies are proved apart.
     pub(super) near: Instant<V>,
-    /// How long the last step was, how much nearer the bodies came in it, and what the normal and the closing speed
-    /// have changed.
-    pub(super) step: V::Scalar,
-    pub(super) came_nearer: V::Scalar,
-    pub(super) turned: V,
-    pub(super) sped_up: V::Scalar,
+    /// The one before it, from which the last step came; at the start, the same one a unit of time before.
+    pub(super) before: Instant<V>,
     /// The bound `M` to be expected of a step like it; at the start, along a plane that does not turn.
     pub(super) acceleration: V::Scalar,
-    /// Whether that predicts the next step: the same points were the closest ones all the way.
-    pub(super) is_smooth: bool,
     /// A later time at which they are apart, though they may not be in between.
     pub(super) ahead: Option<Instant<V>>,
     /// The earliest time known at which they are not certainly apart.
@@ -110,12 +102,8 @@ impl<'p, V: Vector> Search<'p, V> {
             observer,
             base: Base::default(),
             acceleration: bodies.acceleration_along(plane, [zero, Scalar::ONE]),
+            before: Instant { time: -V::Scalar::ONE, ..near },
             near,
-            step: Scalar::ONE,
-            came_nearer: zero,
-            turned: V::ZERO,
-            sped_up: zero,
-            is_smooth: false,
             ahead: None,
             beyond: None,
             farther: None,
@@ -233,18 +221,14 @@ impl<'p, V: Vector> Search<'p, V> {
             self.ahead = Some(*there);
             return false;
         };
-        self.step = there.time - self.near.time;
-        self.came_nearer = self.near.distance - there.distance;
-        self.turned = there.normal - self.near.normal;
+        (self.before, self.near) = (self.near, *there);
         self.acceleration = acceleration;
         // A normal that has turned far makes the next step less like the last one.
-        if self.turned.length_squared() > Scalar::from_f64(FAR) {
-            let plane = TurningPlane { from: there.normal, to: there.normal + self.turned };
-            self.acceleration = self.bodies.acceleration_along(plane, [there.time, there.time + self.step]);
+        let turned = self.turned();
+        if turned.length_squared() > Scalar::from_f64(FAR) {
+            let plane = TurningPlane { from: there.normal, to: there.normal + turned };
+            self.acceleration = self.bodies.acceleration_along(plane, [there.time, there.time + self.step()]);
         }
-        self.sped_up = there.closing - self.near.closing;
-        self.is_smooth = self.near.goes_smoothly_to(there);
-        self.near = *there;
         self.ahead = None;
         if self.base.stage != Stage::Apart {
             self.rise();
@@ -295,10 +279,20 @@ impl<'p, V: Vector> Search<'p, V> {
         there
     }
 
+    /// How long the last step was.
+    pub(super) fn step(&self) -> V::Scalar {
+        self.near.time - self.before.time
+    }
+
+    /// What the normal has changed in it.
+    fn turned(&self) -> V {
+        self.near.normal - self.before.normal
+    }
+
     /// The unit normal at a time, if it turns on as it did in the last step, but no farther.
     pub(super) fn expected_normal(&self, time: V::Scalar) -> V {
-        let part = ((time - self.near.time) / self.step).min(Scalar::ONE);
-        (self.near.normal + self.turned * part).unit().unwrap_or(self.near.normal)
+        let part = ((time - self.near.time) / self.step()).min(Scalar::ONE);
+        (self.near.normal + self.turned() * part).unit().unwrap_or(self.near.normal)
     }
 
     /// The bodies at a time as well as it can be known, which the observer is shown.

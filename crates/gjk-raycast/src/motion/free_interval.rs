@@ -30,8 +30,7 @@
 
 use convex_support::{Scalar, Vector};
 
-use super::from_contact::Base;
-use super::instant::{Approach, Instant};
+use super::instant::{Approach, Base, Instant};
 use super::trajectory::TurningPlane;
 
 /// What may be lost to rounding where both sides of the condition are computed.

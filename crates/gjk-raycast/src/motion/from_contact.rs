@@ -16,12 +16,8 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::first_contact::{MotionEnd, Search};
-use super::instant::Instant;
+use super::instant::{Base, Instant, ROUNDED, Stage};
 use crate::Status;
-
-/// How much lower than contact a level may be where bodies touch, in units of what their places are rounded by at the
-/// time.
-const ROUNDED: f64 = 6.0;
 
 /// How much deeper than they began counts as deeper: so many ε of the bodies' sizes, and [so many times](ROUNDED)
 /// what their places are rounded by at the time.
@@ -39,54 +35,6 @@ const DEEP: f64 = 4.0;
 
 /// How much of the way out of an overlap is asked for at once.
 const OUT: f64 = 0.9;
-
-/// From where distances are measured: from contact, by default.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Base<S> {
-    /// The signed distance that counts as contact, but for how the bodies' places are [rounded](Self::loose).
-    pub(super) level: S,
-    pub(super) stage: Stage,
-    /// The signed distance at the start, what it certainly is not more than, and by how much that is more than what it
-    /// certainly is not less than.
-    start: S,
-    highest: S,
-    width: S,
-    slack: S,
-    /// When the bodies came to the surface.
-    since: S,
-    /// The tolerance that was asked for. A start in contact is as near as the slack, and that of what follows from it
-    /// is none.
-    tolerance: S,
-}
-
-/// What the bodies have done so far.
-#[derive(Clone, Copy, Default, PartialEq)]
-pub(super) enum Stage {
-    /// They have been apart, or a contact counts whatever was before.
-    #[default]
-    Apart,
-    /// They have touched from the start on, to rounding.
-    Touching,
-    /// They have overlapped from the start on, and have not been less deep.
-    Deep,
-    /// They overlap, less deep than they began.
-    Risen,
-    /// They overlapped, and touch, to rounding: they may have been apart, or not.
-    Surfaced,
-}
-
-impl<S: Scalar> Base<S> {
-    /// How much lower the level is, in units of what the places of the bodies are rounded by at the time.
-    pub(super) fn loose(&self) -> S {
-        let is_exact = matches!(self.stage, Stage::Apart | Stage::Risen);
-        if is_exact { S::ZERO } else { S::from_f64(ROUNDED) }
-    }
-
-    /// Whether the bodies are to stay in contact until they are seen to part.
-    fn overlaps(&self) -> bool {
-        matches!(self.stage, Stage::Deep | Stage::Risen)
-    }
-}
 
 impl<V: Vector> Search<'_, V> {
     /// What to answer where the bodies are not certainly apart at the start.
@@ -150,10 +98,12 @@ impl<V: Vector> Search<'_, V> {
 
     fn raise(&mut self, stage: Stage, level: V::Scalar) {
         let known = [Some(self.near), self.beyond, self.farther];
-        let [near, beyond, farther] = known.map(|there| there.map(|there| self.truly(there)));
+        let known = known.map(|there| there.map(|there| self.truly(there)));
         (self.base.stage, self.base.level) = (stage, level);
-        let [near, beyond, farther] = [near, beyond, farther].map(|there| there.map(|there| self.measured(there)));
-        (self.near, self.beyond, self.farther) = (near.unwrap_or(self.near), beyond, farther);
+        let [near, beyond, farther] = known.map(|there| there.map(|there| self.measured(there)));
+        let near = near.unwrap_or(self.near);
+        self.before = self.before.above(self.near.distance - near.distance);
+        (self.near, self.beyond, self.farther) = (near, beyond, farther);
     }
 
     /// What is seen at a time, measured from the level.
@@ -193,7 +143,7 @@ impl<V: Vector> Search<'_, V> {
         }
         let Instant { time, upper, closing, .. } = self.truly(self.near);
         let out = upper / closing * V::Scalar::from_f64(OUT);
-        let step = self.step + self.step;
+        let step = self.step() + self.step();
         let step = if closing < V::Scalar::ZERO && out < step { out } else { step };
         // Of no step at all, the next number.
         if next > time + step && time + step > time { time + step } else { next }
@@ -206,7 +156,7 @@ impl<V: Vector> Search<'_, V> {
         let left = self.options.max_iterations.saturating_sub(self.looks);
         self.looks > LONG
             && matches!(self.base.stage, Stage::Touching | Stage::Deep)
-            && self.step * V::Scalar::from_f64(left as f64) < rest
+            && self.step() * V::Scalar::from_f64(left as f64) < rest
     }
 
     /// Up to when nothing that counts has happened: the bodies may have sunk by less than the slack from the start on.

@@ -38,8 +38,7 @@ use num_traits::Float as _;
 
 use super::instant::{Approach as _, Instant};
 use super::moving_pair::MovingPair;
-use super::near_look::Corners;
-use super::placed::Placed;
+use super::placed::{Corners, Placed};
 use super::rough_look::times;
 use super::trajectory::TurningPlane;
 use crate::SignedDistanceOptions;

@@ -1,4 +1,5 @@
-//! What the search for a first contact asks of two moving bodies, and what is known of them at one time.
+//! What the search for a first contact asks of two moving bodies, what is known of them at one time, and from which
+//! level their distances are measured.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -12,6 +13,10 @@ const KINK: f64 = 0.1;
 
 /// Bodies that are apart, or overlap, by fewer errors than this are looked at closely.
 pub(super) const NEAR: f64 = 64.0;
+
+/// How much lower than contact a level may be where bodies touch, in units of what their places are rounded by at the
+/// time.
+pub(super) const ROUNDED: f64 = 6.0;
 
 /// What is known of the pair at one time.
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +70,54 @@ pub(super) struct Limits<S> {
     pub(super) distance: S,
     /// How deep they are in one another, once they are certainly deeper than this.
     pub(super) depth: S,
+}
+
+/// From where distances are measured: from contact, by default.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Base<S> {
+    /// The signed distance that counts as contact, but for how the bodies' places are [rounded](Self::loose).
+    pub(super) level: S,
+    pub(super) stage: Stage,
+    /// The signed distance at the start, what it certainly is not more than, and by how much that is more than what it
+    /// certainly is not less than.
+    pub(super) start: S,
+    pub(super) highest: S,
+    pub(super) width: S,
+    pub(super) slack: S,
+    /// When the bodies came to the surface.
+    pub(super) since: S,
+    /// The tolerance that was asked for. A start in contact is as near as the slack, and that of what follows from it
+    /// is none.
+    pub(super) tolerance: S,
+}
+
+/// What the bodies have done so far.
+#[derive(Clone, Copy, Default, PartialEq)]
+pub(super) enum Stage {
+    /// They have been apart, or a contact counts whatever was before.
+    #[default]
+    Apart,
+    /// They have touched from the start on, to rounding.
+    Touching,
+    /// They have overlapped from the start on, and have not been less deep.
+    Deep,
+    /// They overlap, less deep than they began.
+    Risen,
+    /// They overlapped, and touch, to rounding: they may have been apart, or not.
+    Surfaced,
+}
+
+impl<S: Scalar> Base<S> {
+    /// How much lower the level is, in units of what the places of the bodies are rounded by at the time.
+    pub(super) fn loose(&self) -> S {
+        let is_exact = matches!(self.stage, Stage::Apart | Stage::Risen);
+        if is_exact { S::ZERO } else { S::from_f64(ROUNDED) }
+    }
+
+    /// Whether the bodies are to stay in contact until they are seen to part.
+    pub(super) fn overlaps(&self) -> bool {
+        matches!(self.stage, Stage::Deep | Stage::Risen)
+    }
 }
 
 /// Two bodies, `a` and `b`, in motion: how far apart they are at any time, and how unevenly that may change in between.

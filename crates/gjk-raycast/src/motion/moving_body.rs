@@ -1,13 +1,17 @@
-//! A body and its motion.
+//! A body and its motion, and what of a box does not change as it moves.
 
-use convex_support::{AngularVelocity, BoundingSphere, Core, Matrix, Scalar, Spin, Vector};
+use convex_support::{AngularVelocity, BoundingSphere, Core, CoreKind, Matrix, Parallelotope, Scalar, Spin, Vector};
 use num_traits::Float;
 
 use super::placed::Moved;
 use super::rigid_motion::{RigidMotion, SpinOf, turn_error};
 use super::trajectory::{MovingBall, Trajectory, TurningPlane};
+use crate::double::{LEAST, Vec3, array, cross, dot, vector};
 use crate::shape::Shape;
 use crate::unit::length_bound;
+
+/// The cosine of the angle between two edges of what is no box.
+const SKEW: f64 = 1e-6;
 
 /// A body and its motion.
 pub(super) struct MovingBody<'s, V: Vector> {
@@ -190,4 +194,36 @@ impl<V: Vector> Rigid<V> {
 impl<V: Vector> Place<V> {
     /// Where a body starts.
     const START: Self = Self { shift: V::ZERO, swing: V::ZERO, rotation: None, error: V::Scalar::ZERO };
+}
+
+/// A core that is a box, as its body starts: its centre relative to the body's origin, unit vectors along its edges,
+/// and half the lengths of these.
+#[derive(Clone, Copy)]
+pub(super) struct Block<V> {
+    pub(super) center: V,
+    pub(super) units: [V; 3],
+    pub(super) halves: [f64; 3],
+}
+
+impl<V: Vector> Block<V> {
+    /// The core of a shape, if it is a box without a radius. In space it may be flat.
+    pub(super) fn of(shape: Shape<'_, V>, core: &Core<V>) -> Option<Self> {
+        if !matches!(core.kind, CoreKind::Polytope) || core.radius > Scalar::ZERO {
+            return None;
+        }
+        let Parallelotope { center, half_edges } = shape.core_parallelotope()?;
+        let mut edges = half_edges.map(array);
+        if V::DIM == 2 {
+            edges[2] = [0.0, 0.0, 1.0];
+        }
+        let squared = edges.map(|edge| dot(edge, edge));
+        let halves = squared.map(|squared| if squared > LEAST { Float::sqrt(squared) } else { 0.0 });
+        let mut units: [Vec3; 3] = core::array::from_fn(|i| edges[i].map(|x| x / halves[i]));
+        if let Some(i) = halves.iter().position(|&half| half == 0.0) {
+            units[i] = cross(&units[(i + 1) % 3], &units[(i + 2) % 3]);
+        }
+        // If another edge has no length either, this is NaN.
+        let is_box = (0..3).all(|i| dot(units[i], units[(i + 1) % 3]).abs() < SKEW);
+        is_box.then(|| Self { center, units: units.map(vector), halves })
+    }
 }

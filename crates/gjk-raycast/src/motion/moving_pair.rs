@@ -1,24 +1,28 @@
-//! Two bodies and their motions.
+//! Two bodies and their motions, and the table of what a search for their contact does beyond its leanest form.
 
 use core::cell::{Cell, RefCell};
 
 use convex_support::numerics::range::is_comfortable;
-use convex_support::{Hint, Scalar, Vector};
+use convex_support::{Core, Hint, Scalar, Vector};
 use num_traits::Float;
 
-use super::boxes::{Block, FacetEdges};
+use super::first_contact::{MotionEnd, Search};
 use super::instant::{Approach, Instant, Limits};
-use super::motion_cast::{FullMotion, MotionCastOptions};
-use super::moving_body::MovingBody;
-use super::near_look::Corners;
-use super::placed::Placed;
+use super::moving_body::{Block, MovingBody};
+use super::placed::{Corners, Placed};
 use super::trajectory::{Trajectory, TurningPlane};
-use crate::body::{Pair, PointPair, Shapes, TracedSupport as _};
-use crate::extra::Extra;
+use crate::body::{CastBody, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::extra::{Extra, in_static};
 use crate::gjk::rounding;
+use crate::linear_cast::{AtStart, by_search};
+use crate::observer::Observer;
+use crate::separation::Closer;
+use crate::shape::Shape;
 use crate::signed_distance::rough_signed_distance;
 use crate::unit::{is_moderate, length_bound, lost_to_underflow};
-use crate::{DistanceOptions, SignedDistanceOptions, distance};
+use crate::{
+    DistanceOptions, LinearCast, LinearCastOptions, Motion, MotionCastOptions, SignedDistanceOptions, distance,
+};
 
 /// Two bodies and their motions.
 pub(super) struct MovingPair<'s, V: Vector> {
@@ -33,12 +37,46 @@ pub(super) struct MovingPair<'s, V: Vector> {
     /// Both cores as they start, if they are boxes.
     boxes: Option<[Block<V>; 2]>,
     /// What spans the facet that they were seen by at the last look, if zero's foot was within it.
-    pub(super) facet: Cell<Option<FacetEdges>>,
+    pub(super) facet: Cell<Option<[usize; 2]>>,
     /// The corners of the faces that were closest at the last look.
     pub(super) closest: RefCell<Corners<V>>,
     /// The support points computed of each shape.
     iterations: Cell<usize>,
 }
+
+/// The functions of a search besides GJK at one time and the points that were closest before.
+#[allow(clippy::type_complexity, reason = "the type is written once")]
+pub(crate) struct FullMotion<V: Vector> {
+    closer: &'static Closer<V>,
+    /// The cast of bodies that do not turn.
+    pub(super) straight: fn(
+        &mut dyn CastBody<Vector = V>,
+        [Shape<'_, V>; 2],
+        [Core<V>; 2],
+        Motion<V>,
+        &LinearCastOptions<V>,
+    ) -> LinearCast<V>,
+    by_boxes: fn(&MovingPair<'_, V>, V::Scalar, &[Block<V>; 2], V, Limits<V::Scalar>, bool) -> Option<Instant<V>>,
+    pub(super) begin_in_contact: fn(&mut Search<'_, V>) -> MotionEnd<V>,
+    keep_in_contact: fn(&MovingPair<'_, V>, &Instant<V>, &Instant<V>, V::Scalar) -> bool,
+    have_met: fn(&MovingPair<'_, V>, &Instant<V>, V::Scalar) -> bool,
+}
+
+impl<V: Vector> FullMotion<V> {
+    const TABLE: Self = Self {
+        closer: &Closer::TABLE,
+        straight: |body, shapes, cores, motion, options| {
+            let options = LinearCastOptions { extra: AtStart::named(), ..*options };
+            by_search(body, shapes, cores, motion, &options, &mut Observer::none())
+        },
+        by_boxes: |pair, time, blocks, axis, limits, is_close| pair.by_boxes(time, blocks, axis, limits, is_close),
+        begin_in_contact: |search| search.begin_in_contact(),
+        keep_in_contact: |pair, from, to, depth| pair.keep_in_contact(from, to, depth),
+        have_met: |pair, near, time| pair.have_met(near, time),
+    };
+}
+
+in_static!(FullMotion);
 
 impl<'s, V: Vector> MovingPair<'s, V> {
     #[inline(always)]

@@ -14,10 +14,10 @@ use num_traits::Float;
 
 use super::instant::{Instant, Limits, NEAR};
 use super::moving_pair::MovingPair;
-use super::placed::Placed;
-use crate::body::{Pair, PointPair, TracedSupport as _};
+use super::placed::{CornerFace, Placed};
+use crate::body::{Pair, TracedSupport as _};
 use crate::gjk::rounding;
-use crate::separation::{Cores, Uncertainty, across_corners, slack};
+use crate::separation::{Cores, Uncertainty, slack};
 use crate::simplex::{MAX_POINTS, project};
 use crate::unit::is_moderate;
 
@@ -26,96 +26,6 @@ const IN_PLANE: f64 = 4.0;
 
 /// The direction of closest points that are apart by this part of the size of both bodies is known to rounding.
 const LONG: f64 = 1.0 / 16.0;
-
-/// Corners of both cores, each relative to its body's origin and turned back to time 0.
-#[derive(Clone, Copy)]
-pub(super) struct Corners<V> {
-    pairs: [PointPair<V>; MAX_POINTS],
-    len: usize,
-}
-
-/// Corners where the bodies are at a time: the face of them that has their point closest to zero.
-pub(super) struct CornerFace<V: Vector> {
-    /// Those of the difference; zero beyond the last.
-    pub(super) points: [V; MAX_POINTS],
-    pairs: [PointPair<V>; MAX_POINTS],
-    pub(super) weights: [V::Scalar; MAX_POINTS],
-    len: usize,
-    /// The closest point.
-    pub(super) v: V,
-}
-
-impl<V: Vector> Corners<V> {
-    /// No corner.
-    pub(super) fn none() -> Self {
-        Self { pairs: [PointPair::default(); MAX_POINTS], len: 0 }
-    }
-
-    /// Takes the given corners, where the bodies are at a time, instead.
-    pub(super) fn keep(&mut self, corners: impl Iterator<Item = PointPair<V>>, Placed { a, b, .. }: &Placed<'_, V>) {
-        self.len = 0;
-        for (to, corner) in self.pairs.iter_mut().zip(corners) {
-            *to = PointPair { a: a.before(corner.a), b: b.before(corner.b) };
-            self.len += 1;
-        }
-    }
-
-    /// Where they are at a time, and the corners of the difference that they make.
-    #[inline(always)]
-    pub(super) fn at(&self, Placed { a, b, offset, .. }: &Placed<'_, V>) -> CornerFace<V> {
-        let len = self.len.min(MAX_POINTS);
-        let (mut pairs, mut points) = ([PointPair::default(); MAX_POINTS], [V::ZERO; MAX_POINTS]);
-        for (i, kept) in self.pairs[..len].iter().enumerate() {
-            pairs[i] = PointPair { a: a.turned(kept.a), b: b.turned(kept.b) };
-            points[i] = pairs[i].a - pairs[i].b + *offset;
-        }
-        CornerFace { points, pairs, weights: [Scalar::ZERO; MAX_POINTS], len, v: V::ZERO }
-    }
-
-    /// The face closest to zero, where the bodies are at a time. Corners that leave the point closest to zero of their
-    /// hull outside are dropped, which finds a face that is near if not the nearest; `None` where no face is found.
-    #[inline(always)]
-    pub(super) fn closest_face(&self, placed: &Placed<'_, V>) -> Option<CornerFace<V>> {
-        let CornerFace { mut points, mut pairs, mut len, .. } = self.at(placed);
-        while len > 0 {
-            let foot = project(&points[..len], |corner| -corner);
-            let weights = foot.coordinates;
-            let is_inside = |i: usize| weights[i] > V::Scalar::ZERO;
-            if (0..len).all(is_inside) {
-                return Some(CornerFace { points, pairs, weights, len, v: -foot.across });
-            }
-            // One weight at least is not positive, or NaN.
-            let before = len;
-            len = 0;
-            for i in (0..before).filter(|&i| is_inside(i)) {
-                (points[len], pairs[len]) = (points[i], pairs[i]);
-                len += 1;
-            }
-        }
-        None
-    }
-}
-
-impl<V: Vector> CornerFace<V> {
-    /// The points of both cores that its closest point is made of.
-    #[inline(always)]
-    pub(super) fn closest_points(&self) -> PointPair<V> {
-        self.corners().zip(&self.weights).fold(PointPair::default(), |sum, ((_, pair), &weight)| sum.plus(pair, weight))
-    }
-
-    /// The corners, and what they are made of.
-    #[inline(always)]
-    pub(super) fn corners(&self) -> impl Iterator<Item = (V, PointPair<V>)> + '_ {
-        self.points.iter().copied().zip(self.pairs.iter().copied()).take(self.len)
-    }
-
-    /// The unit vector across the plane that it spans, towards `axis`.
-    fn unit_across(&self, axis: V) -> Option<V> {
-        let (normal, _) = if self.len == V::DIM { across_corners(&self.points) } else { return None };
-        let unit = normal.unit()?;
-        Some(if unit.dot(axis) < V::Scalar::ZERO { -unit } else { unit })
-    }
-}
 
 impl<V: Vector> MovingPair<'_, V> {
     /// The pair at a time by the closest points of its cores; `None` where they do not tell as much as is wanted. What

@@ -44,7 +44,7 @@ impl<V: Vector> Search<'_, V> {
         }
         // NaN goes to the end, which may be infinitely far.
         let next = if next < end { next } else { end };
-        let next = if next.is_finite() { next } else { time + time.max(self.step) };
+        let next = if next.is_finite() { next } else { time + time.max(self.step()) };
         Some(next).filter(|&next| next > time)
     }
 
@@ -83,11 +83,13 @@ impl<V: Vector> Search<'_, V> {
     fn newton(&self, way: V::Scalar) -> V::Scalar {
         let from_f64 = V::Scalar::from_f64;
         let (two, w) = (from_f64(2.0), self.near.closing);
-        if !self.is_smooth {
+        let is_smooth = self.before.time >= Scalar::ZERO && self.before.goes_smoothly_to(&self.near);
+        if !is_smooth {
             return two * way / (w + (w * w + two * self.acceleration.max(Scalar::ZERO) * way).sqrt());
         }
-        let (h, sped_up) = (self.step, self.sped_up);
-        let bent = from_f64(12.0) * (w - sped_up * from_f64(0.5) - self.came_nearer / h);
+        let (h, sped_up) = (self.step(), w - self.before.closing);
+        let came_nearer = self.before.distance - self.near.distance;
+        let bent = from_f64(12.0) * (w - sped_up * from_f64(0.5) - came_nearer / h);
         let (c, j) = ((sped_up + bent * from_f64(0.5)) / h, bent / (h * h));
         let squared = w * w + two * c * way;
         let after = if squared > Scalar::ZERO { two * way / (w + squared.sqrt()) } else { way / w };

@@ -7,14 +7,14 @@ use num_traits::Float;
 
 use super::first_contact::Search;
 use super::instant::{Approach, Instant, Limits};
-use super::motion_cast::{MotionCastOptions, MotionIterate, check, checked, linear_options, of_linear_cast};
+use super::motion_cast::{check, checked};
 use super::moving_body::MovingBody;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::half_space::Plane;
 use crate::level::Level;
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::{length_bound, lost_to_underflow};
-use crate::{HalfSpace, Motion, MotionCast, RayCastError};
+use crate::{HalfSpace, Motion, MotionCast, MotionCastOptions, MotionIterate, RayCastError};
 
 impl<V: Vector> HalfSpace<V> {
     /// The first contact of a shape that moves and turns, `a`, with the half-space, `b`, which is at rest.
@@ -71,8 +71,8 @@ impl<V: Vector> HalfSpace<V> {
         let rigid = motion.as_rigid_motion();
         if let Some(straight) = rigid.filter(|rigid| rigid.angular_velocity == Default::default()) {
             let motion = Motion { velocity_a: straight.velocity, velocity_b: V::ZERO };
-            let cast = self.linear_cast(shape, motion, linear_options(&options))?;
-            return Ok(of_linear_cast(cast, options.max_time));
+            let cast = self.linear_cast(shape, motion, options.straight())?;
+            return Ok(MotionCast { lower: cast.lower.min(options.max_time), ..cast });
         }
         Ok(first_contact(&WithoutLines(shape), &motion, self, options, &mut observer))
     }

@@ -5,8 +5,7 @@ use num_traits::Float as _;
 
 use super::instant::{Instant, NEAR};
 use super::moving_pair::MovingPair;
-use super::near_look::CornerFace;
-use super::placed::Placed;
+use super::placed::{CornerFace, Placed};
 use crate::SignedDistanceOptions;
 use crate::body::{Pair, PointPair, TracedSupport as _};
 use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk, rounding};

@@ -51,8 +51,10 @@ pub trait Trajectory {
         [from, to]: [ScalarOf<Self>; 2],
     ) -> MovingBall<Self::Vector> {
         let duration = to - from;
-        let [start, end] = [from, to].map(|time| self.displacement(time).of(ball.center));
-        let velocity = (end - start) / duration;
+        let [start, end] = [from, to].map(|time| self.displacement(time));
+        let error = start.error_of(ball.center).max(end.error_of(ball.center));
+        let [start, end] = [start, end].map(|displacement| displacement.of(ball.center));
+        let velocity = if duration > Scalar::ZERO { (end - start) / duration } else { Vector::ZERO };
         // A curve leaves its chord by at most s²/8 times the largest second derivative, in any direction.
         let center = BoundingSphere { center: ball.center, radius: Scalar::ZERO };
         let most = Self::Vector::from_fn(|i| {
@@ -61,7 +63,7 @@ pub trait Trajectory {
             along(axis).max(along(-axis))
         });
         let sagitta = most.norm() * duration * duration * Scalar::from_f64(0.125);
-        MovingBall { start, velocity, radius: ball.radius + sagitta }
+        MovingBall { start, velocity, radius: ball.radius + sagitta + error }
     }
 
     /// The motion as a [`RigidMotion`], if it is one; the provided method returns `None`. Bodies whose motions do not
@@ -113,6 +115,11 @@ impl<V: Vector> Displacement<V> {
     /// The displacement of a point by the turn alone.
     pub(super) fn turned(&self, point: V) -> V {
         self.turn * (point - self.pivot)
+    }
+
+    /// How far that point may be from where it should be, but for the rounding of the sum.
+    fn error_of(&self, point: V) -> V::Scalar {
+        self.shift_error + self.turn_error * length_bound(point - self.pivot)
     }
 
     /// The rotation.

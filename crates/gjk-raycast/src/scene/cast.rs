@@ -226,9 +226,9 @@ impl<S: SupportMap> Among<'_, S> {
         let work = self.in_order(bound, end, |index, _, body| {
             let cast = ask(body)?;
             if cast.outcome.is_undecided() {
-                undecided = Some(undecided.unwrap_or(index).min(index));
+                undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
             }
-            hits.extend(hit_of(index, cast));
+            hits.extend(BodyHit::of(index, &cast));
             Ok(ControlFlow::Continue((end, usize::MAX)))
         })?;
         hits.sort_unstable_by(|p, q| {
@@ -263,7 +263,7 @@ impl<S: SupportMap> Among<'_, S> {
             if cast.outcome.is_undecided() && open.is_none_or(|open| start < open) {
                 open = Some(start);
             }
-            if let Some(hit) = hit_of(index, cast) {
+            if let Some(hit) = BodyHit::of(index, &cast) {
                 let key = (Float::max(value(&hit.hit), from), index);
                 if first.is_none_or(|(least, _)| key < least) {
                     first = Some((key, hit));
@@ -275,12 +275,6 @@ impl<S: SupportMap> Among<'_, S> {
         let lower = if work.cancelled { Scalar::ZERO } else { lower };
         Ok(SceneCast { first: first.map(|(_, hit)| hit), lower, undecided, work })
     }
-}
-
-/// The hit of a cast as that of a body.
-fn hit_of<H, V: Vector>(body: usize, cast: Cast<H, V>) -> Option<BodyHit<H, V::Scalar>> {
-    let Cast { outcome, lower, upper, status, .. } = cast;
-    Some(BodyHit { body, hit: outcome.hit()?, lower, upper, status })
 }
 
 /// The box of a ray, with room for the rounding of its points: 32 ε of the source.

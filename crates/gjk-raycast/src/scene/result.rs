@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use convex_support::{Scalar, Vector};
 
-use crate::{Contact, Distance, Impact, RayHit, SignedDistance, Status};
+use crate::{Cast, Contact, Distance, Impact, RayHit, SignedDistance, Status};
 
 /// What was done for an answer, and what was left out. It may be ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -74,6 +74,14 @@ pub struct BodyHit<H, S: Scalar> {
     pub upper: S,
     /// How the iteration ended.
     pub status: Status,
+}
+
+impl<H: Copy, S: Scalar> BodyHit<H, S> {
+    /// The hit of a body's cast, if it is one.
+    pub(super) fn of<V: Vector<Scalar = S>>(body: usize, cast: &Cast<H, V>) -> Option<Self> {
+        let &Cast { lower, upper, status, .. } = cast;
+        cast.outcome.hit().map(|hit| Self { body, hit, lower, upper, status })
+    }
 }
 
 impl<H, S: Scalar> BodyHit<H, S> {

@@ -5,7 +5,7 @@ use convex_support::{Core, CoreKind, Parallelotope, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use crate::body::PointPair;
-use crate::double::{LEAST, Vec3, array, cross, dot};
+use crate::double::{LEAST, Vec3, array, cross, dot, vector};
 
 /// Edges of two parallelotopes.
 const EDGES: usize = 6;
@@ -386,10 +386,6 @@ fn exact_cross(a: &Vec3, b: &Vec3) -> Vec3 {
         (p - q) + (lost_p - lost_q)
     };
     [minor(1, 2), minor(2, 0), minor(0, 1)]
-}
-
-fn vector<V: Vector>(a: Vec3) -> V {
-    V::from_fn(|i| V::Scalar::from_f64(a[i]))
 }
 
 #[cfg(test)]
