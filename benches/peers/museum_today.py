@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""What today's versions of coal, FCL and MuJoCo answer to the poses of the museum.
+"""What today's versions of coal, FCL, MuJoCo and parry answer to the poses of the museum.
 
     pip install -r benches/peers/requirements.txt
+    cargo build --release -p studies --features peers
     benches/peers/museum_today.py       # then: python3 xtask/data/museum.py, and cargo xtask museum --write
 
 An answer is right if it is off by no more than the tolerance
@@ -16,8 +17,11 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 DATA = os.path.join(HERE, "..", "..", "xtask", "data")
-PEERS = ["coal", "fcl", "mujoco"]
-SCALARS = {"ray_cast": "lambda", "linear_cast": "time", "distance": "distance", "signed_distance": "signed_distance"}
+PEERS = {peer: [sys.executable, os.path.join(HERE, f"{peer}_answers.py")] for peer in ("coal", "fcl", "mujoco")}
+STUDIES = ["cargo", "run", "--release", "--quiet", "-p", "studies", "--features", "peers", "--", "judge", "--parry"]
+# In the precision that a pose asks for.
+PEERS |= {f"parry {precision}": [*STUDIES, precision] for precision in ("f64", "f32")}
+SCALARS = {"ray_cast": "lambda", "linear_cast": "time", "motion_cast": "time", "distance": "distance", "signed_distance": "signed_distance"}
 
 
 def asked(peer, lines):
@@ -26,9 +30,8 @@ def asked(peer, lines):
         questions, answers = os.path.join(folder, "questions.jsonl"), os.path.join(folder, "answers.jsonl")
         with open(questions, "w", encoding="utf-8") as file:
             file.writelines(lines)
-        script = os.path.join(HERE, f"{peer}_answers.py")
         try:
-            ended = subprocess.run([sys.executable, script, questions, answers], capture_output=True, timeout=20, check=False).returncode
+            ended = subprocess.run([*PEERS[peer], questions, answers], capture_output=True, timeout=20, check=False).returncode
         except subprocess.TimeoutExpired:
             ended = 1
         if ended == 0:
@@ -68,7 +71,8 @@ def main():
         lines = [line for line in file if not line.startswith("#")]
     right, wrong, today = {}, {}, {}
     for peer in PEERS:
-        head, answers = asked(peer, lines)
+        precision = peer.partition(" ")[2]
+        head, answers = asked(peer, [line for line in lines if precision in ("", json.loads(line).get("precision", "f64"))])
         for case in map(json.loads, lines):
             answer = answers.get(case["id"])
             if answer and not is_left_out(peer, case, answer):

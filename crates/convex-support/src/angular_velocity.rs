@@ -1,4 +1,4 @@
-//! How fast a body turns: a number in 2D, a vector in 3D.
+//! Angular velocities: a number in 2D, a vector in 3D.
 
 use core::fmt::Debug;
 use core::marker::PhantomData;
@@ -42,7 +42,7 @@ pub trait AngularVelocity<V: Vector>:
     }
 
     /// The constant angular velocity that turns `from` into `to` within one unit of time, the short way round.
-    /// Quaternions need not be unit; of NaNs where one of them is no rotation.
+    /// Quaternions need not be unit; the result is of NaNs if one of them is no rotation.
     fn between(from: V::Rotation, to: V::Rotation) -> Self;
 
     /// The angular velocity `factor` times as fast.
@@ -68,10 +68,10 @@ pub trait AngularVelocity<V: Vector>:
     /// Coordinate `index`, counted from 0, of the one in 2D or the three in 3D.
     ///
     /// # Panics
-    /// If there is none.
+    /// If there is no such coordinate.
     fn coordinate(self, index: usize) -> V::Scalar;
 
-    /// The one whose coordinate `i` is `f(i)`.
+    /// The angular velocity whose coordinate `i` is `f(i)`.
     fn from_coordinates(f: impl FnMut(usize) -> V::Scalar) -> Self;
 }
 
@@ -88,7 +88,7 @@ pub trait AngularVelocity<V: Vector>:
 /// }
 /// ```
 pub trait Spin<V: Vector>: Copy + Debug + Send + Sync + 'static + Sealed {
-    /// What the rotation adds to a vector after `time`, as of [`AngularVelocity::turn`].
+    /// The displacement of a vector by the rotation after `time`, as [`AngularVelocity::turn`] has it.
     fn turn(&self, time: V::Scalar) -> V::Matrix;
 }
 

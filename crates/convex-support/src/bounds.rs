@@ -44,8 +44,8 @@ impl<V: Vector> Aabb<V> {
     }
 }
 
-/// The smallest box along the axes that contains the shape. It consists of the support values along the axes, and so is
-/// as accurate as these: to a few ulps of the largest coordinate, which are not added.
+/// The smallest box along the axes that contains the shape. It consists of the support values along the axes, and is
+/// as accurate as they are: to a few ulps of the largest coordinate, which are not added.
 ///
 /// ```
 /// use convex_support::{Aabb, Cone, Posed, bounding_box, glam::DVec3};

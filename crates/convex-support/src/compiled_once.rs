@@ -42,7 +42,7 @@ macro_rules! compiled_once {
         $visibility:vis fn $name:ident<$V:ident>($($argument:ident: $T:ty),* $(,)?) -> $R:ty $body:block
     ) => {
         $(#[$attribute])*
-        #[allow(clippy::type_complexity, reason = "it is said once")]
+        #[allow(clippy::type_complexity, reason = "the type is written once")]
         #[inline(never)]
         $visibility fn $name<$V: $crate::Vector>($($argument: $T),*) -> $R {
             use $crate::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};

@@ -1,19 +1,20 @@
-//! The parts of a set (origin, core and radius), and bounds on what rounding has done to them.
+//! The parts of a set (origin, core and radius), and bounds on their rounding.
 
 use crate::numerics::bound::{raised, raised_vector, roundings, roundings_of};
 use crate::{Scalar, Vector};
 
-/// What a convex shape is split into: an origin, a smaller shape about it, and the radius of a ball that sweeps that.
+/// The parts of a convex shape: an origin, a smaller shape about it, and the radius of a ball that sweeps the smaller
+/// shape.
 ///
 /// In symbols, the set is `o + K ⊕ B(r)` with the origin `o`, the core `K` near zero, and the radius `r`.
 ///
-/// A ball, a capsule and every [rounded](crate::Rounded) shape is a smaller set, its *core*, swept by a ball. Iterative
-/// methods converge slowly on round surfaces and finish at once on a point or a segment, so they work on the core and
-/// add the radius at the end. They also work relative to the origin of the body, where coordinates are small and
-/// rounding is too.
+/// A ball, a capsule and every [rounded](crate::Rounded) shape is a smaller set, its *core*, swept by a ball.
+/// Iterative methods converge slowly on round surfaces and finish at once on a point or a segment, so they work on
+/// the core and add the radius at the end. They also work relative to the origin of the body, where coordinates and
+/// their rounding are small.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Core<V: Vector> {
-    /// A point near the set, which the core is relative to.
+    /// A point near the set; the core is relative to it.
     pub origin: V,
     /// The radius of the ball that sweeps the core.
     pub radius: V::Scalar,
@@ -27,20 +28,19 @@ pub struct Core<V: Vector> {
     /// An upper bound on the length of every vector that [`core_support`](crate::SupportMap::core_support) computes
     /// with. Its rounding errors are proportional to this length.
     pub extent: V::Scalar,
-    /// An upper bound on how far rounding has moved the core, as a length, with the origin as it was computed: every
-    /// [support point](crate::SupportMap::core_support) is at most so far from a point of the exact core, and the
-    /// support value along a unit direction falls short of the exact one by no more. The error of the radius is
-    /// included.
+    /// An upper bound on the rounding error of the core, as a length, relative to the computed origin: every [support
+    /// point](crate::SupportMap::core_support) is at most this far from a point of the exact core, and the support
+    /// value along a unit direction falls short of the exact one by no more. The error of the radius is included.
     ///
     /// Every query has this bound at once; [`rounding`](crate::SupportMap::rounding) computes finer ones, coordinate by
     /// coordinate.
     pub error: V::Scalar,
-    /// What kind of set the core is.
+    /// The kind of the core.
     pub kind: CoreKind<V>,
 }
 
 impl<V: Vector> Core<V> {
-    /// The core of the set swept by a ball of the radius, as of [`Rounded`](crate::Rounded).
+    /// The core of the set swept by a ball of this radius, as for [`Rounded`](crate::Rounded).
     #[inline(always)]
     #[must_use]
     pub fn rounded(self, radius: V::Scalar) -> Self {
@@ -52,7 +52,7 @@ impl<V: Vector> Core<V> {
     }
 }
 
-/// What kind of set a [core](Core) is.
+/// The kind of a [core](Core).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CoreKind<V> {
     /// A single point, relative to the origin. Its distance from a shape that knows its closest points takes no
@@ -87,7 +87,7 @@ impl<V> CoreKind<V> {
 }
 
 impl<V: Vector> CoreKind<V> {
-    /// The kind of the core's image under a linear map, moved by what the rounding of the origin lost.
+    /// The kind of the core's image under a linear map, moved by the rounding error of the origin.
     #[inline(always)]
     pub(crate) fn image(self, map: impl Fn(V) -> V, lost: V) -> Self {
         match self {
@@ -102,17 +102,16 @@ impl<V: Vector> CoreKind<V> {
     }
 }
 
-/// Bounds on how far rounding has moved the support points of a core.
+/// Bounds on the rounding errors of the support points of a core.
 ///
-/// Let `K` be the core exactly as it follows from the numbers given to the constructors, relative to the computed
-/// [origin](Core::origin), with the error of the radius included; and let `k(d)` be the computed
-/// [support point](crate::SupportMap::core_support). Then, with `|·|` taken coordinate by coordinate,
+/// Let `K` be the exact core that the constructors' arguments define, relative to the computed
+/// [origin](Core::origin), with the error of the radius included. Let `k(d)` be the computed [support
+/// point](crate::SupportMap::core_support). Then, with `|·|` taken coordinate by coordinate,
 ///
 /// > |k(d) − x| ≤ error for a point x of K, and  max { d·y : y ∈ K } ≤ d·k(d) + |d|·error.
 ///
 /// The first makes an upper bound of a distance rigorous, and the second a lower bound. A rotation counts as the
-/// exactly normalised quaternion or the exact angle it is given by, a matrix as it is given, and points as they are
-/// given.
+/// exactly normalised quaternion or the exact angle, a matrix as it is given, and points as they are given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding<V: Vector> {
     /// A bound on the coordinates of all points of the core.
@@ -131,7 +130,7 @@ impl<V: Vector> Rounding<V> {
         Self { extent, error: V::ZERO, error_length: V::Scalar::ZERO }
     }
 
-    /// A core of the given extents whose support points are wrong by a few units in the last place of these.
+    /// A core of the given extents whose support points are wrong by a few units in the last place of the extents.
     #[must_use]
     pub fn relative(extent: V, units: f64) -> Self {
         Self::exact(raised_vector(extent)).with_error(roundings_of(2.0 * units, extent))

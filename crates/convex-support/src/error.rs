@@ -1,4 +1,4 @@
-//! What can be wrong with the numbers a shape is built from.
+//! The errors of the constructors of shapes.
 
 use core::fmt;
 
@@ -25,7 +25,7 @@ pub enum InvalidShape {
         /// The value, converted to `f64`.
         value: f64,
     },
-    /// A length that must be greater than zero is not: an ellipsoid has no flat axes.
+    /// A length that must be greater than zero is not. An ellipsoid has no flat axes.
     NotPositive {
         /// The parameter, as the constructor names it.
         parameter: &'static str,

@@ -1,9 +1,9 @@
-//! What one support query remembers for the next.
+//! The memory of one support query for the next.
 
-/// How many polytopes within one body are remembered; any further ones are searched afresh each time.
+/// The number of polytopes within one body that are remembered; any further ones are searched afresh each time.
 const SLOTS: usize = 4;
 
-/// The vertices that the polytopes within a body answered with last.
+/// The last support vertices of the polytopes within a body.
 ///
 /// Successive support queries of an iterative method, and of successive frames, have nearly the same answer. If a large
 /// polytope is given its last vertex, it climbs to the new one in a few steps. An empty hint (the default) is always
@@ -18,7 +18,7 @@ pub struct Hint {
 }
 
 impl Hint {
-    /// The hint with which nothing is known.
+    /// The empty hint.
     #[must_use]
     pub const fn new() -> Self {
         Self { vertices: [0; SLOTS], next: 0 }
@@ -30,7 +30,7 @@ impl Hint {
         self.next = 0;
     }
 
-    /// The slot of the next polytope; `None` where a body has more polytopes than there are slots.
+    /// The slot of the next polytope; `None` if a body has more polytopes than there are slots.
     #[inline]
     pub fn next_slot(&mut self) -> Option<&mut u32> {
         let slot = self.vertices.get_mut(usize::from(self.next))?;

@@ -1,4 +1,4 @@
-//! The laws of a support map as property tests, to which any shape can be held; with the feature `proptest`.
+//! The laws of a support map as property tests for any shape; with the feature `proptest`.
 //!
 //! ```
 //! use convex_support::{SupportMap, glam::DVec2, laws};

@@ -2,9 +2,9 @@
 //! on [glam](https://docs.rs/glam)'s vectors.
 //!
 //! A convex shape is described by one function, its [support mapping](SupportMap): which of its points lies farthest
-//! along a given direction. That one function is enough for ray casts, distances and continuous collision detection. It
-//! also composes: the Minkowski sum, the difference (the configuration space obstacle), the hull, a pose, an affine map
-//! and rounding each take a few lines, given the support mappings of the shapes they are made of.
+//! along a given direction. This function is enough for ray casts, distances and continuous collision detection. It
+//! also composes: the Minkowski sum, the difference (the configuration space obstacle), the hull, a pose, an affine
+//! map and rounding each take a few lines, given the support mappings of their parts.
 //!
 //! ```
 //! use convex_support::{Ball, Cuboid, Difference, Posed, glam::DVec3, support_value};
@@ -23,12 +23,12 @@
 //! - Shapes in 2D and 3D: [`Point`], [`Segment`], [`Triangle`], [`Ball`], [`Cuboid`], [`Capsule`], [`Ellipsoid`],
 //!   [`Polytope`]; in 3D also [`Cylinder`] and [`Cone`].
 //! - Combinators, which make shapes of shapes: [`Posed`], [`Affine`], [`MinkowskiSum`], [`Difference`], [`Hull`],
-//!   [`Rounded`]. They can be nested, and take shapes by value, by reference, or boxed as `Box<dyn SupportMap<Vector =
-//!   DVec3>>`.
-//! - Questions that every shape answers: [`bounding_box`], [`bounding_sphere`], [`outer_box`]; and questions that
-//!   shapes with a closed form answer: [`closest_point`], [`line_crossing`].
-//! - The traits: [`SupportMap`], to be implemented for shapes of your own; and [`Vector`], [`Rotation`] and [`Scalar`],
-//!   which glam's types implement.
+//!   [`Rounded`]. They can be nested, and take shapes by value, by reference, or boxed as
+//!   `Box<dyn SupportMap<Vector = DVec3>>`.
+//! - Functions of every shape: [`bounding_box`], [`bounding_sphere`], [`outer_box`]; and of shapes with a closed
+//!   form: [`closest_point`], [`line_crossing`].
+//! - The traits: [`SupportMap`], to be implemented for shapes of your own; and [`Vector`], [`Rotation`] and
+//!   [`Scalar`], which glam's types implement.
 //! - A tree of boxes, [`Bvh`], for questions about many shapes.
 //!
 //! Constructors check their numbers and return [`InvalidShape`] if one is wrong; after that, support mappings never
@@ -45,12 +45,13 @@
 //!   read.
 //! - `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`: conversions of parry's shapes to shapes of this crate and
 //!   back, and of its compounds and meshes to their convex pieces.
-//! - `mint`, `bytemuck`, `approx`: what glam has under these names for its vectors: conversions from and to mint's, as
-//!   bytes for buffers of a GPU, and comparison up to a tolerance.
-//! - `simd`: loops over many lines, or many pairs of ellipsoids, take the widest vector instructions of the processor,
-//!   found at run time by pulp. The answers are the same. It is for the crates that ask, and they have one of its name.
-//! - `proptest`: for property tests, the module `laws`, to which a shape of your own can be held, and the module
-//!   `strategies`, which generates shapes and poses of wild aspect and scale.
+//! - `mint`, `bytemuck`, `approx`: the features of glam with these names, for its vectors: conversions from and to
+//!   mint's, as bytes for buffers of a GPU, and comparison up to a tolerance.
+//! - `simd`: loops over many lines, or many pairs of ellipsoids, use the widest vector instructions of the processor,
+//!   found at run time by pulp. The answers are the same. The crates that depend on this one have a feature of the
+//!   same name.
+//! - `proptest`: for property tests, the module `laws`, which tests a shape of your own, and the module `strategies`,
+//!   which generates shapes and poses of wild aspect and scale.
 
 #![no_std]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

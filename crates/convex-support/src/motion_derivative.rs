@@ -36,7 +36,7 @@ impl<V: Vector> MotionGradient<V> {
         Self { translation, rotation: V::AngularVelocity::default(), point }
     }
 
-    /// The same by the motion of the other body, which the force reacts upon.
+    /// The derivative by the motion of the other body, which has the reaction.
     pub fn reversed(self) -> Self {
         let rotation = V::AngularVelocity::from_coordinates(|i| -self.rotation.coordinate(i));
         Self { translation: -self.translation, rotation, ..self }
@@ -105,7 +105,7 @@ impl<V: Vector> MotionHessian<V> {
     /// The entry in a row and a column, translations first.
     ///
     /// # Panics
-    /// If there is none.
+    /// If there is no such entry.
     #[must_use]
     pub fn entry(&self, row: usize, column: usize) -> V::Scalar {
         assert!(row < Self::SIZE && column < Self::SIZE, "a row and a column of the matrix");

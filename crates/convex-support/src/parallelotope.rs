@@ -1,4 +1,4 @@
-//! Boxes, however they were moved or sheared, by their edges.
+//! Boxes, moved or sheared in any way, by their edges.
 
 use crate::Vector;
 

@@ -1,4 +1,4 @@
-//! How glam says *rotation*: an angle in 2D, a quaternion in 3D.
+//! The rotations of a space: an angle in 2D, a quaternion in 3D.
 
 use core::fmt::Debug;
 
@@ -12,8 +12,8 @@ use crate::sealed::Sealed;
 
 /// A rotation of the space of `V`: an angle in radians in 2D, a quaternion of any length in 3D.
 ///
-/// What it stands for is exact: the sine and cosine of the angle, and the quaternion divided by its length.
-/// The trait is sealed; [`Vector::Rotation`] says which type rotates which vectors.
+/// Its meaning is exact: the sine and cosine of the angle, and the quaternion divided by its length. The trait is
+/// sealed; [`Vector::Rotation`] says which type rotates which vectors.
 pub trait Rotation<V: Vector>: Copy + Debug + Default + PartialEq + Send + Sync + 'static + Sealed {
     /// A bound on the rounding error of each entry of [`matrix`](Self::matrix), in units of the scalar's epsilon.
     const MATRIX_ERROR: f64;
@@ -21,11 +21,10 @@ pub trait Rotation<V: Vector>: Copy + Debug + Default + PartialEq + Send + Sync 
     /// A bound on how far the matrix moves a unit vector from where the rotation does, in the same units.
     const OPERATOR_ERROR: f64;
 
-    /// The rotation that the quaternion `x·i + y·j + z·k + w` stands for; in 2D by its angle about `z`, `2·atan2(z,
-    /// w)`.
+    /// The rotation of the quaternion `x·i + y·j + z·k + w`; in 2D by its angle about `z`, `2·atan2(z, w)`.
     fn from_xyzw(quaternion: [V::Scalar; 4]) -> Self;
 
-    /// The matrix; of NaNs where there is none.
+    /// The matrix; of NaNs if there is none.
     fn matrix(self) -> V::Matrix;
 
     /// The rotation if it has a matrix.

@@ -1,4 +1,4 @@
-//! The support mapping, the one thing every convex shape here has in common.
+//! The support mapping, which all convex shapes here have in common.
 
 use num_traits::Float as _;
 
@@ -16,11 +16,11 @@ use crate::{CertainCrossing, Core, CoreKind, Feature, Hint, LineQuery, Parallelo
 #[doc = include_str!("../doc/support.svg")]
 ///
 /// Support mappings compose: the support point of a Minkowski sum is the sum of the support points, that of an affine
-/// image `M·C + t` is `M·s(Mᵀd) + t`, and that of a hull is the farther of two. The combinators of this crate are these
-/// formulas.
+/// image `M·C + t` is `M·s(Mᵀd) + t`, and that of a hull is the farther of two. The combinators of this crate are
+/// these formulas.
 ///
 /// # Implementing it
-/// [`support`](Self::support) is all a shape of your own needs:
+/// A shape of your own needs only [`support`](Self::support):
 ///
 /// ```
 /// use convex_support::{SupportMap, glam::DVec2, support_value};
@@ -44,23 +44,21 @@ use crate::{CertainCrossing, Core, CoreKind, Feature, Hint, LineQuery, Parallelo
 /// assert_eq!(support_value(&Diamond, DVec2::new(-3.0, 1.0)), 3.0);
 /// ```
 ///
-/// An implementor must obey these laws (up to rounding), and may rely on nothing about `d` but that callers make it
-/// finite:
+/// An implementor must obey these laws (up to rounding), and may only assume that `d` is finite:
 /// - `support(d)` is a point of one and the same set for every `d`, and no point of that set is farther along `d`;
-/// - where several points are, any one may be returned; for `d = 0` any point of the set may;
+/// - if several points are equally far, any one may be returned; for `d = 0` any point of the set may;
 /// - only the direction of `d` matters, not its length;
 /// - the same argument gives the same answer, and the provided methods describe the same set.
 ///
-/// With the feature `proptest`, `laws::hold` tests a shape for them.
+/// With the feature `proptest`, `laws::hold` tests whether a shape obeys them.
 ///
-/// Queries take a support point to be right to four units in the last place of the shape's extent. If yours is less
-/// accurate, say so in [`core`](Self::core) and [`rounding`](Self::rounding): the bounds of an answer are certain only
-/// if these are right.
+/// Queries assume that a support point is right to four units in the last place of the shape's extent. If yours is
+/// less accurate, say so in [`core`](Self::core) and [`rounding`](Self::rounding): the bounds of an answer are
+/// certain only if these are right.
 ///
-/// The other methods are optional, and only make queries faster. They tell how the shape splits into a core and a
-/// radius ([`core`](Self::core)), how it curves, which of its points is closest, and where a line crosses it. They are
-/// about the core; to ask about a whole shape, use [`closest_point`](crate::closest_point) and
-/// [`line_crossing`](crate::line_crossing).
+/// The other methods are optional, and only make queries faster. They describe how the shape splits into a core and a
+/// radius ([`core`](Self::core)), its curvature, its closest points, and its crossings by lines. They are about the
+/// core; for a whole shape, use [`closest_point`](crate::closest_point) and [`line_crossing`](crate::line_crossing).
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a convex shape",
     note = "implement `SupportMap` for it: only `support` is required"
@@ -74,9 +72,9 @@ pub trait SupportMap {
 
     /// The parts of the set: an origin, a core and a radius. Algorithms call this once for each query.
     ///
-    /// The provided method takes the whole set for the core, with its origin at zero and a radius of 0, and its support
-    /// points to be right to four units in the last place of its extent. A shape with another origin or a radius
-    /// implements this and [`core_support`](Self::core_support).
+    /// The provided method takes the whole set for the core, with its origin at zero and a radius of 0, and assumes
+    /// that support points are right to four units in the last place of its extent. A shape with another origin or a
+    /// radius implements this and [`core_support`](Self::core_support).
     #[inline(always)]
     fn core(&self) -> Core<Self::Vector> {
         let extent = extent_along_axes(|d| self.support(d)).norm();
@@ -92,7 +90,7 @@ pub trait SupportMap {
 
     /// A point of the core farthest along `direction`, relative to the [origin](Core::origin).
     ///
-    /// `hint` carries what the previous call found, so that a large polytope need not start its search afresh. It
+    /// `hint` carries the result of the previous call, so that a large polytope need not start its search afresh. It
     /// never changes how far along `direction` the answer lies. The provided method is [`support`](Self::support).
     #[inline]
     fn core_support(&self, direction: Self::Vector, hint: &mut Hint) -> Self::Vector {
@@ -100,8 +98,8 @@ pub trait SupportMap {
         self.support(direction)
     }
 
-    /// How the core curves: the entries `u·Hu`, `u·Hw` and `w·Hw` of the Hessian `H` of its support value at
-    /// `direction`, which is how fast the support point moves as the direction turns.
+    /// The curvature of the core: the entries `u·Hu`, `u·Hw` and `w·Hw` of the Hessian `H` of its support value at
+    /// `direction`, which is the derivative of the support point by the direction.
     ///
     /// The provided method returns zeros, which is right at the vertices of a polytope. If a curved shape implements
     /// it, iterative methods double their digits with each step; otherwise they gain only a few.
@@ -112,7 +110,7 @@ pub trait SupportMap {
     }
 
     /// The point of the core closest to `x`, both relative to the [origin](Core::origin), or `x` itself if it is in the
-    /// core. `None`, as the provided method returns, if this would cost more than a few support points.
+    /// core. `None`, as the provided method returns, if it would cost more than a few support points.
     ///
     /// It must be a point of the core. Algorithms check by a support point whether it is the closest one.
     #[inline]
@@ -122,12 +120,12 @@ pub trait SupportMap {
     }
 
     /// Where a line enters the whole set, swept by a further ball: an answer in closed form that is certain. It must
-    /// hold whatever rounding has done to the shape and to this computation, and for every line that passes within
-    /// the [error](LineQuery::error) of the given one near the shape. `None`, as the provided method returns, if
-    /// nothing is certain.
+    /// hold for any rounding of the shape and of this computation, and for every line that passes within the
+    /// [error](LineQuery::error) of the given one near the shape. `None`, as the provided method returns, if nothing is
+    /// certain.
     ///
-    /// Algorithms trust it without a check. They ask in plain numbers, and where that is `None`
-    /// [closely](LineQuery::is_close); then they search.
+    /// Algorithms trust it without a check. They call it in plain numbers first. If the answer is `None`, they call it
+    /// in [twice the precision](LineQuery::is_close), and then they search.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>> {
         let _ = line;
@@ -135,11 +133,11 @@ pub trait SupportMap {
     }
 
     /// Adds to a feature the points of the core that lie within a slab behind its supporting plane, relative to the
-    /// [origin](Core::origin): those `p` of its vertices with `direction·p ≥ h(direction) − slab`. So a face against
-    /// the plane, or nearly so, shows its corners, and an edge its ends. The provided method adds the support point
-    /// alone, as is right for a smooth surface.
+    /// [origin](Core::origin): those vertices `p` with `direction·p ≥ h(direction) − slab`. So a face against the
+    /// plane, or nearly so, adds its corners, and an edge its ends. The provided method adds the support point alone,
+    /// as is right for a smooth surface.
     ///
-    /// Where two shapes touch, the points of both features tell in which points they support each other.
+    /// Where two shapes touch, their contact points follow from both features.
     fn core_support_feature(&self, direction: Self::Vector, slab: ScalarOf<Self>, feature: &mut Feature<Self::Vector>) {
         let _ = slab;
         feature.push(self.core_support(direction, &mut Hint::new()), 0);
@@ -156,16 +154,16 @@ pub trait SupportMap {
     }
 
     /// Bounds on the rounding errors of the core's support points. Algorithms call this once, at the end of a query, to
-    /// prove what they found.
+    /// prove the answer.
     ///
-    /// The provided method finds the size of the core by support points along the axes, and takes every support point
-    /// to be right to four units in the last place of that size.
+    /// The provided method finds the size of the core by support points along the axes, and assumes that every support
+    /// point is right to four units in the last place of that size.
     fn rounding(&self) -> Rounding<Self::Vector> {
         Rounding::relative(extent_along_axes(|d| self.core_support(d, &mut Hint::new())), 4.0)
     }
 }
 
-/// How far a set reaches along `direction`: the largest dot product `h(d) = d·s(d)` of `direction` and a point of the
+/// The support value along `direction`: the largest dot product `h(d) = d·s(d)` of `direction` and a point of the
 /// set, in units of length times the length of `direction`.
 ///
 /// ```
@@ -180,7 +178,7 @@ pub fn support_value<S: SupportMap + ?Sized>(shape: &S, direction: S::Vector) ->
     direction.dot(shape.support(direction))
 }
 
-/// How far a set reaches along each axis, forwards or backwards.
+/// The larger of the support values along each axis, forwards and backwards.
 #[inline]
 fn extent_along_axes<V: Vector>(support: impl Fn(V) -> V) -> V {
     V::from_fn(|i| {
@@ -210,7 +208,7 @@ pub(crate) fn swept<V: Vector>(radius: V::Scalar, direction: V) -> V {
     direction.unit().unwrap_or_else(|| V::axis(0)) * radius
 }
 
-/// The Hessian of the support value of a ball of the given radius about zero, as seen along two changes: with `e` the
+/// The Hessian of the support value of a ball of the given radius about zero, applied to two changes: with `e` the
 /// unit direction and `c` the length of the direction, `r/c·(u·w − (u·e)·(w·e))`.
 #[inline(always)]
 pub(crate) fn swept_hessian<V: Vector>(radius: V::Scalar, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {

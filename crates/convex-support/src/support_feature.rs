@@ -1,4 +1,4 @@
-//! The vertex, edge or face that a shape shows along a direction.
+//! The vertex, edge or face of a shape along a direction.
 
 use num_traits::Float as _;
 
@@ -6,7 +6,7 @@ use crate::numerics::elementary::sin_cos;
 use crate::support::swept;
 use crate::{Scalar, Vector, Vector3};
 
-/// As many points as a feature may have. Of a face with more corners some that span it are taken.
+/// The most points that a feature may have. If a face has more corners, some that span it are taken.
 const MAX_POINTS: usize = 16;
 
 /// Points of a rim that stand for a disc.
@@ -27,8 +27,8 @@ fn hash<V: Vector>(point: V) -> u32 {
 }
 
 /// The points of a shape that lie within a slab behind its supporting plane: a vertex, the ends of an edge, or the
-/// corners of a face, in no order, and perhaps with points in between. For a disc they are some points of the rim, and
-/// [`rim`](Self::rim) gives the disc. If a face has more corners than there is room for, they are [some of the
+/// corners of a face, in no order, and perhaps with points in between. For a disc they are some points of the rim,
+/// and [`rim`](Self::rim) gives the disc. If a face has more corners than there is room for, they are [some of the
 /// corners](Self::is_complete).
 ///
 /// Two shapes in contact touch where their features face each other. Each point has a number that stays the same as
@@ -47,7 +47,7 @@ pub struct Feature<V> {
 pub struct Rim<V> {
     /// The centre `c`.
     pub center: V,
-    /// Two points of the rim, `p` and `q`, at the ends of conjugate radii; of a circle they are at a right angle.
+    /// Two points of the rim, `p` and `q`, at the ends of conjugate radii; for a circle they are at a right angle.
     pub ends: [V; 2],
 }
 
@@ -86,13 +86,13 @@ impl<V: Vector> Feature<V> {
         }
     }
 
-    /// The rim, where the feature is a flat disc; its points are some of those on the rim.
+    /// The rim, if the feature is a flat disc; its points are some of those on the rim.
     #[must_use]
     pub fn rim(&self) -> Option<Rim<V>> {
         self.rim
     }
 
-    /// Says that the feature is a flat disc with this rim.
+    /// Makes the feature a flat disc with this rim.
     pub fn set_rim(&mut self, rim: Rim<V>) {
         self.rim = Some(rim);
     }
@@ -104,12 +104,12 @@ impl<V: Vector> Feature<V> {
         self.is_complete
     }
 
-    /// Takes all points away.
+    /// Removes all points.
     pub fn clear(&mut self) {
         *self = Self { len: 0, rim: None, is_complete: true, ..*self };
     }
 
-    /// Moves every point, by an affine map.
+    /// Maps every point by an affine map.
     pub fn map(&mut self, f: impl Fn(V) -> V) {
         for point in &mut self.points[..self.len] {
             *point = f(*point);

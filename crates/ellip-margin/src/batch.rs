@@ -2,8 +2,8 @@
 //!
 //! Pairs are taken eight at a time and turned into a structure of arrays. The loop over the lanes then has one body
 //! without branches, [`solve_straight`], which the compiler turns into vector instructions: those of the target, or
-//! with the feature `simd` the widest that the processor has, found at run time. Pairs near contact, near the boundary
-//! of E₂, of high aspect, or slow to converge are asked again one by one.
+//! with the feature `simd` the widest of the processor, found at run time. Pairs near contact, near the boundary of
+//! E₂, of high aspect, or slow to converge are solved again one by one.
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -23,8 +23,7 @@ const LANES: usize = 8;
 /// [`free_margin`](crate::free_margin), in a fraction of the time.
 ///
 /// The margins are the same to 1e-14 of 1 + m and the rounding of m, ν to 1e-12 of itself, the signs exactly; all are
-/// the same on every processor. `iterations` is 5, that of the batch, for a pair that did not have to be solved again
-/// by itself.
+/// the same on every processor. `iterations` is 5, that of the batch, for a pair that was not solved again by itself.
 ///
 /// If one list has a single ellipsoid, it is paired with every ellipsoid of the other list.
 ///
@@ -70,8 +69,8 @@ pub fn free_margins_into<V: Vector>(
     Ok(())
 }
 
-/// Calls `ask` with the margin of each pair and returns what it returns, such as gradients and Hessians. The margins
-/// are solved side by side as by [`free_margins`].
+/// Calls `ask` with the margin of each pair and returns the results, such as gradients and Hessians. The margins are
+/// solved side by side as by [`free_margins`].
 ///
 /// ```
 /// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
@@ -105,10 +104,9 @@ pub fn map_margins<'a, V: Vector, T: Send>(
     Ok(answers)
 }
 
-/// [`map_margins`] into a slice: `answers[k]` becomes what `ask` returns for pair k. Nothing is allocated.
+/// [`map_margins`] into a slice: `answers[k]` becomes the result of `ask` for pair k. Nothing is allocated.
 ///
-/// This is the function for columns of a data frame, if a single number of each answer is to go into an existing
-/// buffer.
+/// Use it for columns of a data frame, if a single number of each answer goes into an existing buffer.
 ///
 /// ```
 /// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
@@ -147,8 +145,8 @@ pub fn map_margins_into<'a, V: Vector, T: Send>(
     Ok(())
 }
 
-/// Calls `ask` with each pair and returns what it returns, such as distances, common scales, and their derivatives.
-/// With the feature `rayon` it uses all cores.
+/// Calls `ask` with each pair and returns the results, such as distances, common scales, and their derivatives. With
+/// the feature `rayon` it uses all cores.
 ///
 /// ```
 /// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};

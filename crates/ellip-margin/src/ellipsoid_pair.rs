@@ -1,4 +1,4 @@
-//! A pair of ellipsoids, and answers that know which pair they are about.
+//! A pair of ellipsoids, and answers that refer to their pair.
 
 use core::ops::Deref;
 
@@ -8,11 +8,10 @@ use crate::{
     Distance, DistanceBracket, Margin, MarginOptions, Scaling, distance, distance_bracket, free_margin, scaling,
 };
 
-/// Two ellipsoids, which can be asked for their margin, their distance and their common scale, with the derivatives of
-/// each.
+/// Two ellipsoids, with methods for their margin, their distance and their common scale, each with derivatives.
 ///
-/// Nothing is computed before it is asked for. An [`Answer`] refers to the same two ellipsoids, so that its derivatives
-/// cannot be those of others.
+/// A value is computed only when its method is called. An [`Answer`] refers to the same two ellipsoids, so that its
+/// derivatives cannot be those of others.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};

@@ -4,15 +4,15 @@ use core::fmt;
 
 /// Why a question cannot be answered.
 ///
-/// A single ellipsoid is checked when it is built ([`InvalidShape`](convex_support::InvalidShape)); what is left are
-/// options and lists.
+/// A single ellipsoid is checked when it is built ([`InvalidShape`](convex_support::InvalidShape)), so that only
+/// options and lists can be wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum InvalidQuery {
     /// The tolerance given to [`MarginOptions`](crate::MarginOptions) is not positive and finite.
     Tolerance(f64),
-    /// The threshold below which pairs are asked for is not a number.
+    /// The threshold of the pairs is not a number.
     ThresholdNotANumber,
     /// There is no link, hence no pair to take the minimum over.
     NoLinks,
@@ -23,9 +23,9 @@ pub enum InvalidQuery {
     CountChanged {
         /// The list that changed: `"links"` or `"obstacles"`.
         list: &'static str,
-        /// How many there were.
+        /// The number before.
         before: usize,
-        /// How many there are.
+        /// The number now.
         now: usize,
     },
     /// Two lists that should go together pair by pair are of different lengths.
@@ -35,9 +35,9 @@ pub enum InvalidQuery {
         /// The length of the second list.
         second: usize,
     },
-    /// A column for answers is not as long as there are pairs.
+    /// The length of a column for answers is not the number of pairs.
     AnswersLength {
-        /// How many pairs there are.
+        /// The number of pairs.
         pairs: usize,
         /// The length of the column.
         answers: usize,

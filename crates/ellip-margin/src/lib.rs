@@ -1,10 +1,10 @@
-//! The free margin of ellipsoids: how far a robot's link is from an obstacle, and in which direction that distance
+//! The free margin of ellipsoids: how far a robot's link is from an obstacle, and in which direction this distance
 //! grows; in 2D and 3D, `f32` and `f64`, on [glam](https://docs.rs/glam)'s vectors.
 //!
-//! The margin `m` of E₁ about E₂ tells how much E₁ has to grow about its own centre to touch E₂: by the factor √(1 + m)
-//! (Rimon and Boyd, *Obstacle collision detection using best ellipsoid fit*, 1997). It is positive where they are
-//! disjoint, 0 where they touch, negative where they overlap, and continuously differentiable throughout. Where the
-//! centre of E₁ lies in E₂ it is −1.
+//! The margin `m` of E₁ about E₂ says how much E₁ has to grow about its own centre to touch E₂: by the factor √(1 +
+//! m) (Rimon and Boyd, *Obstacle collision detection using best ellipsoid fit*, 1997). It is positive where they are
+//! disjoint, 0 where they touch, negative where they overlap, and continuously differentiable throughout. It is −1 if
+//! the centre of E₁ lies in E₂.
 //!
 //! ```
 //! use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
@@ -24,8 +24,8 @@
 //! - [`distance`]: the Euclidean distance, between certified bounds; [`distance_bracket`]: only bounds, in less time.
 //! - [`scaling`]: the common scale at which the two touch if both are scaled about their own centres. It is symmetric,
 //!   and has a slope at any depth of overlap.
-//! - [`EllipsoidPair`]: the same three with their derivatives. Each answer has `gradient` and `hessian` by the motion
-//!   of the first body, and `gradient_of_second` and `hessian_of_second` by that of the second.
+//! - [`EllipsoidPair`]: these three with their derivatives. Each answer has `gradient` and `hessian` by the motion of
+//!   the first body, and `gradient_of_second` and `hessian_of_second` by that of the second.
 //!
 //! # Many pairs
 //! - [`free_margins`] computes margins side by side in vector registers, and [`map_margins_into`] writes one number of
@@ -33,10 +33,10 @@
 //!
 //! # Along a motion
 //! - [`MarginTracker`] follows one pair.
-//! - [`Clearance`] finds the least margin of many links about many obstacles; [`clearance`] finds the same by asking
+//! - [`Clearance`] finds the least margin of many links about many obstacles; [`clearance`] finds the same by solving
 //!   all pairs.
 //!
-//! # The paper's own routes, corrected
+//! # The paper's own methods, corrected
 //! - With the feature `paper`: `paper::free_margin_eigen`, `paper::InverseIterationTracker`,
 //!   `paper::eigenvalue_gradient`.
 //!
@@ -45,15 +45,15 @@
 //!   `no_std` targets with `alloc`, to the same bits.
 //! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
 //!   instead.
-//! - `hull`, `mint`, `bytemuck`, `approx`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: those of
-//!   [`convex_support`], for its shapes.
-//! - `paper`: the paper's own routes, with eigenvalues by faer.
+//! - `hull`, `mint`, `bytemuck`, `approx`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: the
+//!   features of [`convex_support`] with these names, for its shapes.
+//! - `paper`: the paper's own methods, with eigenvalues by faer.
 //! - `rayon`: [`free_margins`] and [`clearance`] use all cores. The answers are the same to the last bit.
 //! - `serde`: options, answers, derivatives and trackers as data, beside convex-support's shapes. An option that is
-//!   left out has its default. Errors can be written but not read. [`EllipsoidPair`] and [`Answer`] are no data, since
-//!   they can be built again from their ellipsoids; nor is [`Clearance`], since its bounds are only right if its own
-//!   steps computed them.
-//! - `simd`: batches take the widest vector instructions of the processor, found at run time by pulp. The answers are
+//!   left out has its default. Errors can be written but not read. [`EllipsoidPair`] and [`Answer`] cannot be
+//!   written, since they can be built again from their ellipsoids; nor can [`Clearance`], since its bounds are only
+//!   right if its own steps computed them.
+//! - `simd`: batches use the widest vector instructions of the processor, found at run time by pulp. The answers are
 //!   the same.
 
 #![no_std]

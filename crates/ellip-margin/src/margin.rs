@@ -23,16 +23,16 @@ pub struct Margin<V: Vector> {
     /// they touch, negative where they overlap, −1 where x₁ lies in E₂. Grown by the factor √(1 + m), E₁ just touches
     /// E₂.
     pub margin: V::Scalar,
-    /// The multiplier ν ≥ 0 of the constraint x ∈ E₂: 0 where x₁ lies in E₂, and else minus the minimal eigenvalue λ*
+    /// The multiplier ν ≥ 0 of the constraint x ∈ E₂: 0 if x₁ lies in E₂, and otherwise minus the minimal eigenvalue λ*
     /// of the paper's 2N×2N matrix.
     pub nu: V::Scalar,
-    /// The minimiser x*: the point of E₂ where the grown E₁ touches it; x₁ where that lies in E₂.
+    /// The minimiser x*: the point of E₂ where the grown E₁ touches it; x₁ if x₁ lies in E₂.
     pub point: V,
     /// How the iteration for ν ended.
     pub status: Status,
-    /// The steps it took; 0 where x₁ lies in E₂.
+    /// The steps it took; 0 if x₁ lies in E₂.
     pub iterations: usize,
-    /// x* as seen by E₂: diag(a₂)⁻¹R₂ᵀ(x* − x₂), a unit vector unless x₁ lies in E₂. Kept because gradients from
+    /// x* in the frame of E₂: diag(a₂)⁻¹R₂ᵀ(x* − x₂), a unit vector unless x₁ lies in E₂. Kept because gradients from
     /// differences of `point` would lose digits far from the origin.
     pub(crate) ball_point: V,
 }
@@ -69,8 +69,8 @@ pub fn free_margin<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: Mar
     free_margin_with(e1, e2, options, |_, _| {})
 }
 
-/// [`free_margin`], watched: `observer(ν, φ)` sees every iterate ν with φ(ν) = ‖y(ν)‖, which is 1 at the solution and
-/// greater before it.
+/// [`free_margin`] with an observer: `observer(ν, φ)` sees every iterate ν with φ(ν) = ‖y(ν)‖, which is 1 at the
+/// solution and greater before it.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec2};
@@ -102,10 +102,10 @@ pub fn free_margin_with<V: Vector>(
     in_dimension!(once::<V>(e1, e2, options, observer))
 }
 
-/// By the polynomial, refined where rounding could show in its margin, and where it would lose digits by the singular
-/// basis; from `start`, 0 for none known.
+/// The solution by the polynomial, refined if rounding could show in its margin, or by the singular basis if the
+/// polynomial would lose digits; from `start`, 0 for none known.
 ///
-/// The seldom ways are given the pair by value, so that the pair of the common way can stay in registers.
+/// The rare ways take the pair by value, so that the pair of the common way can stay in registers.
 #[inline]
 pub(crate) fn solve<const N: usize>(
     pair: &Pair<N>,

@@ -2,7 +2,7 @@
 
 use crate::InvalidQuery;
 
-/// What [`free_margin`](crate::free_margin) may spend.
+/// The options of [`free_margin`](crate::free_margin).
 ///
 /// ```
 /// use ellip_margin::MarginOptions;
@@ -23,19 +23,19 @@ pub struct MarginOptions {
     /// Positive and finite.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "checked"))]
     tolerance: f64,
-    /// The largest number of steps; the default, 64, is several times what any pair has been seen to need.
+    /// The largest number of steps; the default, 64, is several times the most that any pair has needed.
     pub max_iterations: usize,
-    /// How the equation is set up.
+    /// The form of the secular equation.
     pub method: Method,
 }
 
-/// How the secular equation is set up.
+/// The form of the secular equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Method {
-    /// As a polynomial where that keeps its digits, which is where both bodies have moderate aspects, and in
-    /// the singular basis elsewhere.
+    /// As a polynomial where it keeps its digits, which is where both bodies have moderate aspects, and in the singular
+    /// basis elsewhere.
     #[default]
     Automatic,
     /// In the basis of singular vectors that makes both bodies round at once: full accuracy at any condition, at
@@ -57,8 +57,8 @@ impl MarginOptions {
         Self { tolerance: 1e-15, max_iterations: 64, method: Method::Automatic }
     }
 
-    /// The relative error of ν to reach, as foreseen from the last step and the order of the method. The default,
-    /// 1e-15, leaves nothing but rounding; the margin's own error is about the square of this.
+    /// The relative error of ν to reach, as predicted from the last step and the order of the method. The
+    /// default, 1e-15, leaves nothing but rounding; the margin's own error is about the square of this.
     #[must_use]
     pub const fn tolerance(&self) -> f64 {
         self.tolerance

@@ -1,4 +1,4 @@
-//! The common scale at which two ellipsoids touch: symmetric, smooth, and telling how deep they overlap.
+//! The common scale at which two ellipsoids touch: symmetric, smooth, and a measure of their overlap.
 //!
 //! Perram and Wertheim (1985): grown or shrunk together about their own centres, E₁ and E₂ touch at the scale α with
 //! α² = max over t in [0, 1] of t(1 − t)·rᵀ[(1 − t)P⁻¹ + tQ⁻¹]⁻¹r. In the singular basis of the margin, with ν = (1 −
@@ -28,10 +28,10 @@ pub struct Scaling<V: Vector> {
     /// The scale α ≥ 0: if both bodies are scaled by it about their centres, they just touch. If it is above 1 they are
     /// disjoint, below 1 they overlap, and it is 0 if they are concentric.
     pub scale: V::Scalar,
-    /// Where they touch then.
+    /// The point of contact then.
     pub point: V,
-    /// The unit normal of the common tangent plane there, from E₁ to E₂. Zero for concentric bodies: it jumps where the
-    /// centres meet.
+    /// The unit normal of the common tangent plane there, from E₁ to E₂. Zero for concentric bodies, since it jumps
+    /// where the centres meet.
     pub normal: V,
     /// (α − 1)(a₁ + a₂) with the least semi-axis of each: a length that is negative where the bodies overlap,
     /// continuous and as smooth as α. It is exact for balls. For others its magnitude is a lower bound, where they are
@@ -41,8 +41,9 @@ pub struct Scaling<V: Vector> {
     pub status: Status,
     /// The steps it took.
     pub iterations: usize,
-    /// Where they touch as each of them sees it, as unit vectors of the balls they are images of, that of E₂ with the
-    /// opposite sign; zero for concentric bodies. Kept because derivatives from `point` or `normal` would lose digits.
+    /// The point of contact in the frame of each body, as unit vectors of the balls they are images of, that of E₂ with
+    /// the opposite sign; zero for concentric bodies. Kept because derivatives from `point` or `normal` would lose
+    /// digits.
     pub(crate) ball_points: [V; 2],
 }
 

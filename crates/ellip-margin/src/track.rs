@@ -40,13 +40,13 @@ pub struct MarginTracker {
 const DEPTH: usize = 5;
 
 impl MarginTracker {
-    /// A tracker that has seen nothing yet.
+    /// A new tracker, without a step.
     #[must_use]
     pub const fn new(options: MarginOptions) -> Self {
         Self { options, past: [0.0; DEPTH], steps: 0, iterations: 0 }
     }
 
-    /// The margin of `e1` about `e2`, wherever they have moved since the last call.
+    /// The margin of `e1` about `e2`, which may have moved in any way since the last call.
     pub fn step<V: Vector>(&mut self, e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> Margin<V> {
         if V::DIM == 2 { self.step_in::<V, 2>(e1, e2) } else { self.step_in::<V, 3>(e1, e2) }
     }
@@ -58,7 +58,7 @@ impl MarginTracker {
         answer(&pair, solution)
     }
 
-    /// Remembers a step.
+    /// Stores a step.
     #[inline]
     fn note(&mut self, nu: f64, iterations: usize) {
         // A step with x₁ in E₂ says nothing about the next one outside.
@@ -73,9 +73,9 @@ impl MarginTracker {
         self.iterations += iterations as u64;
     }
 
-    /// ν of the next step by the polynomial through the last k + 1 values, ν + ∇ν + … + ∇ᵏν, whose error at the last
-    /// step was ∇ᵏ⁺¹ν: that k is taken for which it was least. Where even that was more than a 256th of ν there is no
-    /// path to follow, and the bound that a cold start begins with is the better guess: 0.
+    /// The prediction of the next ν by the polynomial through the last k + 1 values, ν + ∇ν + … + ∇ᵏν, whose error at
+    /// the last step was ∇ᵏ⁺¹ν: the k with the least error is taken. If even that was more than a 256th of ν there is
+    /// no path to follow, and the bound that a cold start begins with is the better guess: 0.
     fn forecast(&self) -> f64 {
         let (mut sum, mut best, mut least) = (0.0, 0.0, f64::INFINITY);
         for k in 0..DEPTH - 1 {

@@ -420,21 +420,23 @@ impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
     #[inline(never)]
     fn certain_crossing(&self, line: LineQuery<T::Vector>) -> Option<CertainCrossing<T::Vector>> {
         let (core_a, core_b, zero) = (&self.core_a, &self.core_b, T::Vector::ZERO);
-        match (core_a.kind, core_b.kind) {
+        let (of, line) = match (core_a.kind, core_b.kind) {
             (_, CoreKind::Point(b)) => {
                 let line = line.seen_from([zero, -b]).within(core_b.error);
-                let line = line.sweeping(core_b.radius).sweeping(self.swept);
-                self.shapes.certain_crossing(Of::A, line)
+                (Of::A, line.sweeping(core_b.radius).sweeping(self.swept))
             }
             (CoreKind::Point(a), _) => {
                 // As `b` sees it, `a` moves, and backwards.
                 let from_b = line.seen_from([core_b.origin, zero]);
                 let line = LineQuery { source: -from_b.source, direction: -from_b.direction, ..from_b };
-                let line = line.seen_from([-core_a.origin, -a]).sweeping(core_a.radius).within(core_a.error);
-                Some(self.shapes.certain_crossing(Of::B, line)?.with_normal(|n| -n))
+                let line = line.seen_from([-core_a.origin, -a]).within(core_a.error);
+                (Of::B, line.sweeping(core_a.radius))
             }
-            _ => None,
-        }
+            _ => return None,
+        };
+        // Asked at one place, since it is compiled for each pair of shapes.
+        let crossing = self.shapes.certain_crossing(of, line)?;
+        Some(if of == Of::B { crossing.with_normal(|n| -n) } else { crossing })
     }
 
     fn hessian_of_first(

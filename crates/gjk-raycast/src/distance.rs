@@ -7,7 +7,7 @@ use crate::observer::Observer;
 use crate::separation::{Cores, OfOverlap, Wanted, direct, separation};
 use crate::{Distance, DistanceOptions, Iterate, SignedDistance, SignedDistanceOptions};
 
-/// The distance of two shapes, and where they are closest.
+/// The distance of two shapes, and their closest points.
 ///
 /// ```
 /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
@@ -23,8 +23,8 @@ use crate::{Distance, DistanceOptions, Iterate, SignedDistance, SignedDistanceOp
 /// ```
 ///
 /// Two points of the shapes bound the distance from above, and a slab between the shapes bounds it from below. The
-/// iteration ends when these bounds meet. Where the shapes overlap, the distance is 0 and the depth is not known:
-/// [`signed_distance`](crate::signed_distance) finds it.
+/// iteration ends when these bounds meet. If the shapes overlap, the distance is 0, and
+/// [`signed_distance`](crate::signed_distance) finds the depth.
 ///
 #[doc = include_str!("../doc/bracket.svg")]
 #[inline]
@@ -36,7 +36,7 @@ where
     watched(a, b, options, &mut Observer::none())
 }
 
-/// [`distance`], showing an observer every iterate.
+/// [`distance`] with an observer that sees every iterate.
 #[inline]
 pub fn distance_with<A, B>(
     a: &A,
@@ -78,7 +78,7 @@ where
 }
 
 compiled_once! {
-    /// The distance by a search, of shapes that are in order, swapped or not.
+    /// The distance by a search, for shapes that are in order or swapped.
     fn by_search<V>(
         shapes: &dyn Shapes<Vector = V>,
         cores: [Core<V>; 2],

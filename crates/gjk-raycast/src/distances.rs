@@ -7,9 +7,9 @@ use crate::{Distance, DistanceOptions, distance};
 /// Calls `ask` with the distance of `a[k]` and `b[k]`, and writes what it returns into `answers[k]`, for each k.
 /// Nothing is allocated.
 ///
-/// Each distance is the answer of [`distance`] to the last bit, whatever its neighbours are, so that a table may be cut
-/// into parts anywhere. If a list has a single shape, that shape is used for every answer. `ask` chooses what is kept:
-/// a number for a column of a data frame, the bracket, or the answer as it is.
+/// Each distance is the answer of [`distance`] to the last bit, whatever its neighbours are, so that a table may be
+/// cut into parts anywhere. If a list has a single shape, that shape is used for every answer. `ask` chooses what to
+/// keep: a number for a column of a data frame, the bracket, or the whole answer.
 ///
 /// ```
 /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};

@@ -6,27 +6,27 @@ use num_traits::Float as _;
 
 use crate::Distance;
 
-/// Which changes of a body's pose certainly leave it farther from another body than a margin, without a further
-/// question: those in which no point of it goes farther than [`room`](Self::room).
+/// The changes of a body's pose that certainly leave it farther from another body than a margin, without another
+/// query: those in which no point of it goes farther than [`room`](Self::room).
 ///
-/// It is found by [`Distance::free_step`].
+/// [`Distance::free_step`] makes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreeStep<S> {
-    /// How far every point may go: the lower bound of the distance, less the margin; negative where there is no room.
+    /// How far every point may go: the lower bound of the distance, less the margin; negative if there is no room.
     pub room: S,
-    /// How far the points of the body are from the pivot, at most.
+    /// The largest distance of the points of the body from the pivot.
     pub reach: S,
 }
 
 impl<V: Vector> Distance<V> {
-    /// For which changes of the pose of `a` it stays farther from `b` than a margin.
+    /// The changes of the pose of `a` that leave it farther from `b` than a margin.
     ///
-    /// A change turns `a` by an angle about any axis through the pivot, and moves it: no point goes farther than the
-    /// way of the pivot and the angle times the point's distance from it. Along the normal of the plane that separates
-    /// the bodies, nothing comes nearer by more. So one distance serves until a body has gone as far as it tells: a
-    /// controller that asks at each of its steps mostly need not.
+    /// A change turns `a` by an angle about any axis through the pivot, and moves it. No point goes farther than the
+    /// path of the pivot plus the angle times the point's distance from it. Along the normal of the plane that
+    /// separates the bodies, no point comes nearer by more. So one distance serves until the body has gone as far as
+    /// its room: most steps of a controller need no new query.
     ///
     /// ```
     /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
@@ -44,8 +44,9 @@ impl<V: Vector> Distance<V> {
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
     ///
-    /// If `b` moves too, its ways come off the same room. The answer must be that of these bodies, and `a` as it was
-    /// asked about. If [`limit`](crate::DistanceOptions::limit) ended the question, the room is what was known by then.
+    /// If `b` moves too, subtract its path from the same room. The answer must be that of these bodies, with `a` in its
+    /// pose of the query. If [`limit`](crate::DistanceOptions::limit) ended the query, the room is that of the lower
+    /// bound found by then.
     pub fn free_step<A: SupportMap<Vector = V> + ?Sized>(
         &self,
         a: &A,
@@ -62,14 +63,14 @@ impl<V: Vector> Distance<V> {
 }
 
 impl<S: Scalar> FreeStep<S> {
-    /// Whether the body stays farther away than the margin if its pivot goes by so much, and it turns about that by an
-    /// angle. NaN is not allowed.
+    /// Whether the body stays farther away than the margin if its pivot moves by this length, and it turns about the
+    /// pivot by an angle. NaN is not allowed.
     #[must_use]
     pub fn allows(&self, way: S, angle: S) -> bool {
         raised(way.abs() + self.reach * angle.abs()) < self.room
     }
 
-    /// How far the pivot may go if the body turns by an angle: negative where it may not turn so far.
+    /// How far the pivot may go if the body turns by an angle; negative if it may not turn so far.
     #[must_use]
     pub fn way(&self, angle: S) -> S {
         self.room - raised(self.reach * angle.abs())

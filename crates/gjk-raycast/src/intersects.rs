@@ -41,7 +41,7 @@ where
     watched(a, b, options, &mut Observer::none())
 }
 
-/// [`intersects`], showing an observer every iterate.
+/// [`intersects`] with an observer that sees every iterate.
 #[inline(always)]
 pub fn intersects_with<A, B>(
     a: &A,
@@ -108,7 +108,7 @@ where
 }
 
 compiled_once! {
-    /// [`intersects_with`] where the first direction does not separate the shapes.
+    /// [`intersects_with`] if the first direction does not separate the shapes.
     fn by_search<V>(
         shapes: &dyn Shapes<Vector = V>,
         cores: [Core<V>; 2],
@@ -158,17 +158,17 @@ compiled_once! {
     }
 }
 
-/// What was found about the first direction.
+/// The result for the first direction.
 struct FirstSupport<V> {
     /// The difference of the origins.
     offset: V,
     direction: V,
-    /// The support point, relative to the origins, if they are of sizes to be computed with in the world's unit.
+    /// The support point, relative to the origins, if the world's unit can represent the sizes.
     point: Option<V>,
 }
 
-/// The answer of the distance, which knows all that can be known of bodies near contact, and of curved ones goes on by
-/// their curvature where support points alone make no progress.
+/// The answer of [`distance`](crate::distance), which measures bodies near contact again, and for curved bodies goes
+/// on by their curvature if support points alone make no progress.
 #[cold]
 #[inline(never)]
 fn closely<V: Vector>([a, b]: [Shape<'_, V>; 2], max_iterations: usize) -> Intersection<V> {

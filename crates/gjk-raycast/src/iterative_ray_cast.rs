@@ -7,16 +7,15 @@ use crate::cast::LocalRay;
 use crate::unit::power_of_two_near;
 use crate::{Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
 
-/// How often it is looked for where the ray is in the set for certain, each time four times as far behind the last
-/// plane.
+/// How many places are tested for the ray to be certainly in the set, each four times as far behind the last plane.
 const LOOKS: usize = 8;
 
 /// The first point of a ray in a convex set that is given by its closest points: `closest_point(x)` is the point of
 /// the set closest to `x`, or `x` itself within the set, or `None` if it is not known.
 ///
 /// Each step moves along the ray to the plane through the closest point. This is Newton's iteration for the distance
-/// along the ray: on a polytope it ends after finitely many steps, and on a curved surface the digits double with each
-/// step. The set is given by a function, so that it need not be a shape; for a shape, the function is
+/// along the ray: on a polytope it ends after finitely many steps, and on a curved surface the digits double with
+/// each step. The set is given by a function, so that it need not be a shape; for a shape, the function is
 /// [`closest_point`](convex_support::closest_point).
 ///
 /// ```
@@ -33,11 +32,11 @@ const LOOKS: usize = 8;
 ///
 /// # Accuracy
 /// λ is as accurate as that of [`ray_cast`](crate::ray_cast), if the closest point is right to rounding of the
-/// coordinates of `x` and of the set. The point closest to the source tells where the set is. The ray is based at its
-/// own point closest to that one, so that a far source loses only its own digits.
+/// coordinates of `x` and of the set. The ray is based at its own point closest to the set's point closest to the
+/// source, so that a far source loses only its own digits.
 ///
-/// A closest point proves a plane, and so a lower bound. That the ray is in the set is proved by points around it:
-/// [`upper`](RayCast::upper) is where all of them are in the set by more than rounding, and infinite where no such
+/// A closest point proves a plane, and so a lower bound. Points around the ray prove that it is in the set:
+/// [`upper`](RayCast::upper) is where all of them are in the set by more than rounding. It is infinite if no such
 /// place is found, as for a graze or a flat set.
 ///
 /// # Errors
@@ -51,11 +50,11 @@ pub fn iterative_ray_cast<V: Vector>(
     iterative_ray_cast_with(closest_point, ray, options, |_| {})
 }
 
-/// [`iterative_ray_cast`], showing an observer every iterate: `v` is the vector to the current point of the ray from
-/// the closest point.
+/// [`iterative_ray_cast`] with an observer that sees every iterate: `v` is the vector from the closest point to the
+/// current point of the ray.
 ///
 /// # Errors
-/// As [`iterative_ray_cast`].
+/// Those of [`iterative_ray_cast`].
 pub fn iterative_ray_cast_with<V: Vector>(
     mut closest_point: impl FnMut(V) -> Option<V>,
     ray: Ray<V>,
@@ -105,7 +104,7 @@ pub fn iterative_ray_cast_with<V: Vector>(
     }
 }
 
-/// The answer of a search that ended before it came to one.
+/// The answer of a search that ended without one.
 fn undecided<V: Vector>(lower: V::Scalar, status: Status, iterations: usize) -> RayCast<V> {
     RayCast { outcome: Outcome::Undecided, lower, upper: Float::infinity(), status, iterations }
 }
@@ -118,10 +117,10 @@ struct Travelled<'o, V: Vector> {
     origin: V,
     scale: V::Scalar,
     local: LocalRay<V>,
-    /// Where the ray begins on the line, and the λ of that.
+    /// Where the ray begins on the line, and its λ.
     begin: V::Scalar,
     least: V::Scalar,
-    /// Where the ray is, before the plane by what rounding may have moved that.
+    /// Where the ray is, before the plane by a bound on its rounding.
     mu: V::Scalar,
     /// Where it crosses the plane.
     crossing: V::Scalar,
@@ -135,7 +134,7 @@ enum Step<V: Vector> {
     Advances,
     /// The next plane is no farther along the ray than the last one.
     Stalls,
-    /// The point of the ray is in the set, to what its place is wrong by.
+    /// The point of the ray is in the set, to its rounding.
     Arrives {
         noise: V::Scalar,
     },
@@ -181,8 +180,8 @@ impl<'o, V: Vector> Travelled<'o, V> {
         (self.local.lambda(self.proved) - self.local.error(self.proved, V::Scalar::ZERO)).max(self.least)
     }
 
-    /// What a point and its closest point are wrong by, in the unit: they are only known to the rounding of their
-    /// coordinates.
+    /// A bound on the error of a point and its closest point, in the unit: they are only accurate to the rounding of
+    /// their coordinates.
     fn noise(&self, x: V, c: V) -> V::Scalar {
         V::Scalar::from_f64(8.0) * V::Scalar::EPSILON * (x.norm() + c.norm()) / self.scale
     }
@@ -215,12 +214,12 @@ impl<'o, V: Vector> Travelled<'o, V> {
         Step::Advances
     }
 
-    /// Where the ray is in the set at the latest, looked for from where it is in it to noise; infinite where no place
-    /// is found.
+    /// Where the ray is certainly in the set, tested from where it is in the set to noise; infinite if no place is
+    /// found.
     ///
-    /// At a place `x` of the ray, the points `x ± ρ·eᵢ` along the `n` axes are asked. If each is in the set to two
-    /// noises `ν`, and wrong by one, then points of the set are no farther than `3ν` from them, and their hull has a
-    /// ball about `x` of radius `ρ/√n − 3ν`: for `ρ = 8ν` more than the `ν` that `x` is off the ray.
+    /// At a place `x` of the ray, the points `x ± ρ·eᵢ` along the `n` axes are tested. If each is in the set to two
+    /// noises `ν`, with an error of one, then points of the set are no farther than `3ν` from them, and their hull has
+    /// a ball about `x` of radius `ρ/√n − 3ν`: for `ρ = 8ν` more than the `ν` that `x` is off the ray.
     fn latest_entry(
         &self,
         noise: V::Scalar,
@@ -261,7 +260,7 @@ impl<'o, V: Vector> Travelled<'o, V> {
         Ok(Float::infinity())
     }
 
-    /// The answer where x is in the set, to noise, and the ray at `upper` for certain.
+    /// The answer if x is in the set, to noise, and the ray at `upper` for certain.
     fn hit(&self, upper: V::Scalar, iterations: usize) -> RayCast<V> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         let (lower, is_at_start) = (self.lower(), self.mu <= self.begin);
@@ -279,8 +278,7 @@ impl<'o, V: Vector> Travelled<'o, V> {
         RayCast { outcome, lower, upper, status, iterations }
     }
 
-    /// The answer where the plane across `n` through x's closest point has all of the ray before it that the last plane
-    /// has left.
+    /// The answer if the plane across `n` through x's closest point has the rest of the ray before it.
     fn miss(&self, n: V) -> Outcome<RayHit<V>, V> {
         // Together with the plane before x, the axis has the whole ray before it: across the ray, both count.
         let direction = self.local.line.direction;

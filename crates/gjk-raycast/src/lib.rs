@@ -1,8 +1,8 @@
-//! Ray casts, distances, contacts and continuous collision detection for convex shapes of any kind, which may also turn
-//! as they move, by the Gilbert–Johnson–Keerthi algorithm (GJK): 2D and 3D, `f32` and `f64`, with certified answers.
+//! Ray casts, distances, contacts and continuous collision detection for convex shapes of any kind, which may move
+//! and turn, by the Gilbert–Johnson–Keerthi algorithm (GJK): 2D and 3D, `f32` and `f64`, with certified answers.
 //!
-//! Shapes are support maps of [`convex_support`]: its primitives, its combinators, or your own. That crate is exported
-//! again as [`gjk_raycast::convex_support`](convex_support), and glam as `gjk_raycast::convex_support::glam`.
+//! Shapes are support maps of [`convex_support`]: its primitives, its combinators, or your own. That crate is
+//! exported as [`gjk_raycast::convex_support`](convex_support), and glam as `gjk_raycast::convex_support::glam`.
 //!
 //! ```
 //! use convex_support::{Cuboid, Posed, glam::DVec3};
@@ -24,7 +24,8 @@
 //! # Questions it answers
 //! About two shapes:
 //! - *How far apart are they, and which points are closest?* [`distance`] (GJK, Algorithm 2 of the paper).
-//! - *If they overlap, how deep, and which way out is shortest?* [`signed_distance`] (GJK, then an expanding polytope).
+//! - *If they overlap, how deep, and which way out is shortest?* [`signed_distance`] (GJK, then an expanding
+//!   polytope).
 //! - *In which points do they support each other?* [`contact`], a manifold of up to four points.
 //! - *Do they meet?* [`intersects`], which stops at the first separating axis and can start from the last one.
 //! - *When do they meet, moving without turning?* [`linear_cast`], a ray cast at their difference.
@@ -35,15 +36,15 @@
 //!
 //! About a robot:
 //! - *Is its path free, at every time, and what does it meet first?* [`Linkage::path`].
-//! - *Do two of its links ever meet, wherever its joints are?* [`Linkage::joint_box`].
+//! - *Do two of its links ever meet, at any positions of the joints?* [`Linkage::joint_box`].
 //!
 //! About a ray and a shape:
 //! - *Where does the ray enter?* [`ray_cast`], and [`ray_casts`] for many rays: a closed form, a portal, or Algorithm 3
 //!   of the paper, see [`CastMethod`]. *Where does it leave?* [`ray_exit`].
-//! - *Where do many rays enter?* [`ray_entries_into`] writes numbers into a slice, by several rays at a time where the
+//! - *Where do many rays enter?* [`ray_entries_into`] writes numbers into a slice, for several rays at a time if the
 //!   shape has a closed form.
-//! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes whose closest points have a
-//!   closed form.
+//! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes whose closest points have
+//!   a closed form.
 //!
 //! About many shapes:
 //! - *Which is hit first, which is nearest, which are within a distance, which pairs are near each other, and in which
@@ -52,19 +53,20 @@
 //!
 //! About an answer:
 //! - *How does it change with a pose, a joint, a velocity?* `gradient` of [`Distance`], [`SignedDistance`],
-//!   [`Impact`] and [`RayHit`]. [`ClosestFeatures`] tells whether that derivative is unique, and has
-//!   second derivatives.
-//! - *What proves it?* [`distance_certificate`] and its like: a [`Certificate`] for a checker that trusts nothing else.
+//!   [`Impact`] and [`RayHit`]. [`ClosestFeatures`] tells whether the derivative is unique, and has second
+//!   derivatives.
+//! - *What proves it?* [`distance_certificate`] and its like: a [`Certificate`] for a checker that trusts nothing
+//!   else.
 //!
 //! Every answer says how the iteration ended ([`Status`]), and every distance, depth, λ and time has a lower and an
 //! upper bound that come from the geometry: one from a separating plane, the other from points of the bodies.
-//! [`Outcome`] tells a hit, a miss and an undecided cast apart; where a program has to choose, it is safe to treat an
+//! [`Outcome`] tells a hit, a miss and an undecided cast apart. If a program has to choose, it is safe to treat an
 //! undecided cast as a hit at its lower bound. The iterative functions have a variant `…_with` that shows an
 //! [observer](Iterate) every iterate.
 //!
 //! # References
 //! Gino van den Bergen, *Ray Casting against General Convex Objects with Application to Continuous Collision
-//! Detection*, 2004, referred to as the paper.
+//! Detection*, 2004, is called the paper.
 //!
 //! # Features
 //! - `std` (default): square roots and the like by the processor's instructions; without it by the libm crate, for
@@ -73,17 +75,17 @@
 //!   instead.
 //! - `rayon`: `par_ray_casts`, `Among::par_ray_casts`, `Among::par_pairs_within`, `Among::par_contacts_within` and
 //!   `Linkage::par_paths`, which use all threads.
-//! - `simd`: [`ray_entries_into`] takes the widest vector instructions of the processor, found at run time by pulp. The
-//!   answers are the same.
+//! - `simd`: [`ray_entries_into`] uses the widest vector instructions of the processor, found at run time by pulp.
+//!   The answers are the same.
 //! - `paper`: the sub-algorithms of the papers beside the default, for comparison: [`SubAlgorithm`].
-//! - `hull`, `mint`, `bytemuck`, `approx`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: those of
-//!   [`convex_support`], for its shapes.
+//! - `hull`, `mint`, `bytemuck`, `approx`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: the
+//!   features of [`convex_support`] with these names, for its shapes.
 //! - `serde`: options, answers and certificates as data, beside the shapes of `convex-support`.
 //!
 //! # Answers as data
 //! With the feature `serde`, questions and answers can be written in any format of [serde](https://docs.rs/serde) and
-//! read back to the last bit: options, rays, motions and poses, half-spaces and [`Body`]; every answer, [`Certificate`]
-//! and derivative. For JSON, `serde_json` needs its feature `float_roundtrip`.
+//! read back to the last bit: options, rays, motions and poses, half-spaces and [`Body`]; every answer,
+//! [`Certificate`] and derivative. For JSON, `serde_json` needs its feature `float_roundtrip`.
 //!
 //! ```
 //! # #[cfg(feature = "serde")] {
@@ -103,15 +105,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! - An option that is left out has its default, and an unknown option is an error. As in code, an option may have any
-//!   value; where its documentation says so, the query takes a negative number for zero.
+//! - An option that is left out has its default, and an unknown option is an error. As in code, an option may have
+//!   any value; where its documentation says so, the query takes a negative number for zero.
 //! - JSON has no infinity. An infinite bound or limit is `null` there, such as the end of a ray that has none, or an
 //!   unknown upper bound. If the support map of a shape returned numbers that are not finite, the answer may have
 //!   coordinates that JSON cannot hold, and then it cannot be read back.
-//! - Errors can be written but not read, as they name parameters of this crate. Some types are no data: what observers
-//!   are shown; what a [`Trajectory`] answers; [`ChainMotion`], which borrows its [`RigidMotion`]s;
-//!   [`ClosestFeatures`], which can be found again from an answer and its shapes; [`Scene`], which can be built again
-//!   from its bodies; and [`Linkage`], with what it is made of, is asked and answers.
+//! - Errors can be written but not read, as they name parameters of this crate. Some types cannot be written: the
+//!   iterates that observers see; the answers of a [`Trajectory`]; [`ChainMotion`], which borrows its
+//!   [`RigidMotion`]s; [`ClosestFeatures`], which can be found again from an answer and its shapes; [`Scene`], which
+//!   can be built again from its bodies; and [`Linkage`], with its parts, its questions and its answers.
 
 #![no_std]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

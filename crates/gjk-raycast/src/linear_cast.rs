@@ -1,4 +1,4 @@
-//! When two shapes that move without turning meet.
+//! The first contact of two shapes that move without turning.
 
 use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
@@ -17,15 +17,16 @@ use crate::{
     StartInContact, Status, WarmStart,
 };
 
-/// Shapes that are apart by so many ε of their sizes, and of how far away they are, may be in contact: they and their
-/// places are rounded.
+/// Shapes may be in contact if they are apart by so many ε of their sizes and of their distance from the origin: they
+/// and their places are rounded.
 const NEAR: f64 = 16.0;
 const NEAR_OF_FAR: f64 = 4.0;
 
-/// When and where two shapes that move at constant velocities, without turning, first touch.
+/// The first contact of two shapes that move at constant velocities, without turning.
 ///
-/// A ray is cast against their configuration space obstacle: `A + t·v_A` and `B + t·v_B` have a point in common if and
-/// only if `t·(v_B − v_A)` is in `A − B`. If the velocities are equal, the answer is a hit only if the shapes overlap.
+/// A ray is cast against their configuration space obstacle: `A + t·v_A` and `B + t·v_B` have a point in common if
+/// and only if `t·(v_B − v_A)` is in `A − B`. If the velocities are equal, the answer is a hit only if the shapes
+/// overlap.
 ///
 /// ```
 /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -41,10 +42,10 @@ const NEAR_OF_FAR: f64 = 4.0;
 /// ```
 ///
 /// # Stepping a world
-/// If shapes are moved to their contact, the next cast starts with shapes that touch. By default it is a hit at time 0
-/// again, whatever the motion. With [`StartInContact::IfDeeper`] it is a hit only if the shapes get deeper than they
-/// began. A motion that leaves the contact, or slides along it, is a miss, since shapes that move straight do not meet
-/// again:
+/// If shapes are moved to their contact, the next cast starts with shapes that touch. By default it is a hit at
+/// time 0 again, whatever the motion. With [`StartInContact::IfDeeper`] it is a hit only if the shapes get deeper
+/// than they began. A motion that leaves the contact, or slides along it, is a miss, since shapes that move straight
+/// do not meet again:
 ///
 /// ```
 /// use convex_support::{Ball, Cuboid, Posed, glam::DVec2};
@@ -63,8 +64,8 @@ const NEAR_OF_FAR: f64 = 4.0;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// A cast to a [`target_distance`](LinearCastOptions::target_distance) is that of `a` swept by a ball of that radius,
-/// and is certified in the same way.
+/// A cast to a [`target_distance`](LinearCastOptions::target_distance) is the cast of `a` swept by a ball of that
+/// radius, and is certified in the same way.
 ///
 /// # Errors
 /// [`RayCastError::NonFinite`] if a velocity is not finite, the target distance is NaN or infinite, or the end of the
@@ -83,10 +84,10 @@ where
     watched(a, b, motion, options, &mut Observer::none())
 }
 
-/// [`linear_cast`], showing an observer every iterate.
+/// [`linear_cast`] with an observer that sees every iterate.
 ///
 /// # Errors
-/// As of [`linear_cast`].
+/// Those of [`linear_cast`].
 #[inline]
 pub fn linear_cast_with<A, B>(
     a: &A,
@@ -119,7 +120,7 @@ where
     Ok(as_body(a, b, target, |body, shapes, cores| by_search(body, shapes, cores, motion, &options, observer)))
 }
 
-/// What a search asks of two shapes, one of them swept by a ball.
+/// The questions of a search about two shapes, one of them swept by a ball.
 #[inline(always)]
 pub(crate) fn as_body<A, B, R>(
     a: &A,
@@ -137,8 +138,8 @@ where
     search(&mut body, shapes.each(), cores)
 }
 
-/// How shapes that touch at the start are known, beside what the cast itself knows of them.
-#[allow(clippy::type_complexity, reason = "it is said once")]
+/// The functions that measure shapes in contact at the start, in addition to the cast itself.
+#[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct AtStart<V: Vector> {
     rays: &'static Quicker<V>,
     touch: fn(&StartingPair<'_, V>, &mut LinearCast<V>, &LinearCastOptions<V>),
@@ -156,7 +157,7 @@ impl<V: Vector> AtStart<V> {
 in_static!(AtStart);
 
 compiled_once! {
-    /// The cast of a pair of shapes that have these cores, by a search.
+    /// The cast by a search, for a pair of shapes with these cores.
     pub(crate) fn by_search<V>(
         body: &mut dyn CastBody<Vector = V>,
         shapes: [Shape<'_, V>; 2],
@@ -181,7 +182,7 @@ compiled_once! {
     }
 }
 
-/// What a cast says of two shapes.
+/// The answer of a cast about two shapes.
 fn answer<V: Vector>(
     cast: &ObstacleCast<V>,
     [a, b]: [Shape<'_, V>; 2],
@@ -228,7 +229,7 @@ fn answer<V: Vector>(
     answer
 }
 
-/// The ray that `b` draws as it is seen from `a`, and what is asked of it.
+/// The ray of `b` in the frame of `a`, with its options.
 #[inline(always)]
 fn ray_of<V: Vector>(
     motion: Motion<V>,
@@ -260,8 +261,9 @@ fn ray_of<V: Vector>(
 
 /// A hit of bodies that are apart at the start.
 ///
-/// With `p` a point of a's core and `q` one of b's, `q − p + spot` is what lies between them at the time, and is as
-/// long as both radii. The point that divides it as they do is on both shapes, however well the normal is known.
+/// With `p` a point of a's core and `q` one of b's, `q − p + spot` is the vector between them at that time, as long
+/// as both radii together. The point that divides it in the ratio of the radii is on both shapes, whatever the error
+/// of the normal.
 #[inline(always)]
 fn hit_on_the_way<V: Vector>(
     hit: &CastHit<V>,
@@ -277,8 +279,8 @@ fn hit_on_the_way<V: Vector>(
     Impact { time, point: at_start + velocity_b * time - between * share, normal: normal.map(|n| -n) }
 }
 
-/// What is to be answered where only a motion that goes deeper counts as a hit, of what is otherwise. Shapes that are
-/// apart by no more than a slack may be in contact.
+/// The answer if only a motion that goes deeper counts as a hit, given the plain answer. Shapes that are apart by no
+/// more than a slack may be in contact.
 #[cold]
 #[inline(never)]
 fn only_if_deeper<V: Vector>(

@@ -1,17 +1,17 @@
-//! Who watches a search, if anybody does.
+//! The observer of a search, if there is one.
 
 use convex_support::Vector;
 
 use crate::Iterate;
 
-/// Whoever is shown the iterates of a search. The searches are compiled once, so that it is known behind a pointer; and
-/// what nobody watches is not computed.
+/// An observer of a search, or none. It is behind a pointer, since the searches are compiled once. Iterates are only
+/// computed for an observer.
 pub(crate) struct Observer<'o, V: Vector>(Option<&'o mut Closure<'o, V>>);
 
 type Closure<'o, V> = dyn FnMut(Iterate<'_, V>) + 'o;
 
 impl<'o, V: Vector> Observer<'o, V> {
-    /// Nobody.
+    /// No observer.
     #[inline(always)]
     pub(crate) fn none() -> Self {
         Self(None)
@@ -35,7 +35,7 @@ impl<'o, V: Vector> Observer<'o, V> {
         self.0.is_none()
     }
 
-    /// Runs a search of bodies that may be swapped: what is shown is of those in the order they were given in.
+    /// Runs a search of bodies that may be swapped: the iterates are shown for the bodies in their original order.
     #[inline(always)]
     pub(crate) fn of_swapped<R>(&mut self, is_swapped: bool, search: impl FnOnce(&mut Observer<'_, V>) -> R) -> R {
         let is_watched = is_swapped && !self.is_none();

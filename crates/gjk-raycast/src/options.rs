@@ -9,15 +9,15 @@ use crate::linear_cast::AtStart;
 use crate::separation::Closer;
 use crate::{SubAlgorithm, WarmStart};
 
-/// Iterations after which a query gives up. Polytopes and smooth shapes need a dozen; the cap only bounds the time
-/// spent on a support map that is not one.
+/// Iterations after which a query gives up. Polytopes and smooth shapes need a dozen. The cap only bounds the time
+/// spent on a support map that breaks its laws.
 const MAX_ITERATIONS: usize = 200;
 
-/// Support points after which a signed distance is given up. Polytopes need some dozens, smooth shapes about a hundred;
-/// the cap bounds the time that ties take, such as an ellipsoid of revolution within another about the same axis.
+/// Support points after which a signed distance gives up. Polytopes need some dozens, smooth shapes about a hundred.
+/// The cap bounds the time for ties, such as an ellipsoid of revolution within another about the same axis.
 const MAX_DEPTH_ITERATIONS: usize = 500;
 
-/// The methods `with_…` of the fields that options have.
+/// The methods `with_…` for the fields of options.
 macro_rules! setters {
     ($($field:ident),*) => { $(setters! { @ $field })* };
     (@ tolerance) => {
@@ -90,7 +90,7 @@ macro_rules! setters {
 
 pub(crate) use setters;
 
-/// Options by default are new ones.
+/// Implements `Default` by `new`.
 macro_rules! new_by_default {
     ($($Options:ident),*) => {$(
         impl<V: Vector> Default for $Options<V> {
@@ -112,11 +112,11 @@ new_by_default!(DistanceOptions, SignedDistanceOptions, IntersectOptions, RayCas
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct DistanceOptions<V: Vector> {
     /// The width of the bracket at which to stop, relative to the distance. A bracket at the level of rounding,
-    /// relative to the size of what is compared, always ends the iteration. A negative value and NaN are taken for
-    /// zero. Default: 0.
+    /// relative to the size of the shapes and their distance, always ends the iteration. A negative value and NaN are
+    /// taken for zero. Default: 0.
     pub tolerance: V::Scalar,
-    /// Stop as soon as the distance is certain to exceed this limit; the bracket is then left as wide as it is at that
-    /// moment. NaN is no limit. Default: infinity.
+    /// Stop as soon as the distance is certain to exceed this limit; the bracket may then still be wide. NaN is no
+    /// limit. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub limit: V::Scalar,
     /// The iterations after which to give up. Default: 200.
@@ -136,12 +136,12 @@ impl<V: Vector> DistanceOptions<V> {
         Self { extra: Closer::named(), ..Self::lean() }
     }
 
-    /// The default options, naming no more machine code than GJK: a program in which all options are lean has a quarter
-    /// of the code for distances.
+    /// The default options, with no machine code besides GJK: a program in which all options are lean has a quarter of
+    /// the code for distances.
     ///
-    /// What is left out is the closer look at bodies that are apart, or in one another, by no more than a few roundings
-    /// of their sizes. There the bracket is as wide as the errors of the largest number in the query, bodies that are
-    /// certainly apart by less may count as touching, and what GJK alone does not decide is
+    /// The second measurement near contact is left out: of bodies that are apart, or overlap, by no more than a few
+    /// roundings of their sizes. There the bracket is as wide as the errors of the largest number in the query, bodies
+    /// that are certainly apart by less may count as touching, and if GJK alone does not decide, the status is
     /// [`Status::Stalled`](crate::Status::Stalled). All other answers are the same to the last bit.
     #[must_use]
     pub fn lean() -> Self {
@@ -164,18 +164,18 @@ impl<V: Vector> DistanceOptions<V> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SignedDistanceOptions<V: Vector> {
-    /// The width of the bracket at which to stop in overlap, relative to the size of what is compared. It concerns
-    /// curved shapes; of polytopes the facet that decides is found exactly. Default: 1e-9 in `f64`, 8ε in `f32`.
+    /// The width of the bracket at which to stop in overlap, relative to the sizes of the shapes and their distance. It
+    /// concerns curved shapes; for polytopes the facet that decides is found exactly. Default: 1e-9 in `f64`, 8ε in
+    /// `f32`.
     pub tolerance: V::Scalar,
     /// Stop as soon as the shapes are certain to be farther apart than this. NaN is no limit. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub limit: V::Scalar,
-    /// Stop as soon as the shapes are certain to be deeper in one another than this. NaN is no limit. Default:
-    /// infinity.
+    /// Stop as soon as the depth is certain to exceed this. NaN is no limit. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub depth_limit: V::Scalar,
-    /// The support points of each shape after which to give up. The points of both shapes at the ends of a depth that
-    /// is not known better may take a sixteenth more. Default: 500.
+    /// The support points of each shape after which to give up. If the depth is not known exactly by then, the closest
+    /// points of both shapes may take a sixteenth more. Default: 500.
     pub max_iterations: usize,
     /// A first guess of the direction from `b` to `a`, such as the normal of the last answer. Default: none.
     pub axis: Option<V>,
@@ -223,23 +223,23 @@ impl<V: Vector> IntersectOptions<V> {
     setters!(max_iterations, axis, sub_algorithm);
 }
 
-/// How a cast finds the planes that bound its hit. The bounds are computed in the same way by every method, so that the
+/// How a cast finds the planes that bound its hit. Every method computes the bounds in the same way, so that the
 /// choice changes only the time that a cast takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum CastMethod {
-    /// The fastest. First the shape is asked where the line [certainly
-    /// enters](convex_support::SupportMap::certain_crossing) it, if it knows that. Then, in 3D, a triangle of support
-    /// points that the ray pierces (a portal) is moved towards the surface, by the simplex method of linear
-    /// programming. Where that is in doubt, and in 2D, this is the same as [`Gjk`](Self::Gjk).
+    /// The fastest. It begins with the [certain crossing](convex_support::SupportMap::certain_crossing) of the shape by
+    /// the line, if the shape has one. Then, in 3D, a triangle of support points that the ray pierces (a portal) is
+    /// moved towards the surface, by the simplex method of linear programming. If this leaves the answer in doubt, and
+    /// in 2D, it is the same as [`Gjk`](Self::Gjk).
     #[default]
     Portal,
     /// The paper's Algorithm 3: each plane is across the vector from the ray's point to the simplex of support points.
     Gjk,
 }
 
-/// What a cast answers where the bodies touch at the start.
+/// What a cast answers if the bodies touch at the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -248,17 +248,17 @@ pub enum StartInContact {
     #[default]
     Report,
     /// A hit is the first time from which the bodies get deeper into one another than they began, or at which they
-    /// touch again after they were apart. Sliding, rolling or turning at the same depth is no hit, nor is coming out.
-    /// Bodies that move straight get deeper at once, a hit at time 0, or never: a miss.
+    /// touch again after they were apart. Sliding, rolling or turning at the same depth is no hit, and neither is
+    /// moving apart. Bodies that move straight get deeper at once, a hit at time 0, or never: a miss.
     ///
-    /// Deeper is deeper by more than a slack: 16ε of the bodies' sizes, a few times what their places are rounded by,
-    /// and what their depth at the start is known to. As long as bodies that turn are as deep as they began, to this
-    /// slack, nobody can tell when they begin to sink. So the lower bound of their hit is 0, and if they may have sunk
-    /// from the start on, its time is 0 too.
+    /// Deeper means deeper by more than a slack. The slack is the sum of 16ε of the bodies' sizes, a few times the
+    /// rounding of their places, and the uncertainty of their depth at the start. While turning bodies stay as deep as
+    /// they began, to this slack, the time when they begin to sink cannot be known. So the lower bound of their hit
+    /// is 0, and if they may have sunk from the start on, its time is 0 too.
     ///
-    /// Undecided is what comes up from an overlap until it only touches, to rounding, and goes down again. So is what
-    /// rolls on its own edge or its own round face, unless it is a ball, as its support points tell nothing of what is
-    /// between them.
+    /// The answer is undecided if bodies come up from an overlap until they only touch, to rounding, and go down again.
+    /// It is also undecided if a body rolls on its own edge or its own round face, unless it is a ball: its support
+    /// points tell nothing of the points between them.
     IfDeeper,
 }
 
@@ -268,8 +268,8 @@ pub enum StartInContact {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct RayCastOptions<V: Vector> {
-    /// The beginning of the ray, in units of its direction; it belongs to the ray. Anything hit before it does not
-    /// count, so that a ray can start on a surface and leave it. A negative value is taken for zero. Default: 0.
+    /// The beginning of the ray, in units of its direction; it belongs to the ray. Points of the target before it do
+    /// not count, so that a ray can start on a surface and leave it. A negative value is taken for zero. Default: 0.
     pub min_lambda: V::Scalar,
     /// The end of the ray, in units of its direction; the end belongs to the ray. If it is before the beginning, the
     /// ray has no points, and the answer is a miss. Default: infinity.
@@ -278,9 +278,10 @@ pub struct RayCastOptions<V: Vector> {
     /// How far along the ray the hit may stay uncertain, relative to the size of the target. A bracket at the level of
     /// rounding always ends the iteration. A negative value and NaN are taken for zero. Default: 0.
     pub tolerance: V::Scalar,
-    /// The iterations after which to give up, those of second looks included. Default: 200.
+    /// The iterations after which to give up, those of repeated searches included. Default: 200.
     pub max_iterations: usize,
-    /// What the last frame tells of the outward normal or of a separating axis. Default: nothing.
+    /// The warm start from the last frame's answer, which predicts the outward normal or a separating axis. Default:
+    /// none.
     pub warm_start: Option<WarmStart<V>>,
     /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
     pub sub_algorithm: SubAlgorithm,
@@ -297,14 +298,14 @@ impl<V: Vector> RayCastOptions<V> {
         Self { extra: Quicker::named(), ..Self::lean() }
     }
 
-    /// The default options, naming no more machine code than the closed forms of the shape and Algorithm 3: a program
-    /// in which all options are lean has two fifths of the code for rays.
+    /// The default options, with no machine code besides the closed forms of the shape and Algorithm 3: a program in
+    /// which all options are lean has two fifths of the code for rays.
     ///
-    /// What is left out is the faster search of [`CastMethod::Portal`], which is then the same as
-    /// [`Gjk`](CastMethod::Gjk) where no closed form is certain: a search takes two to five times as long, and its
-    /// bracket may be wider. Left out, too, is the second look at a source within rounding of the target, and at a hit
-    /// next to an edge or a graze. There the answer may be a hit that is not
-    /// [certain](crate::RayCast::is_certain), or undecided, where the default options know.
+    /// The faster search of [`CastMethod::Portal`] is left out. It is then the same as [`Gjk`](CastMethod::Gjk) where
+    /// no closed form is certain: a search takes two to five times as long, and its bracket may be wider. A second
+    /// measurement is left out too: of a source within rounding of the target, and of a hit next to an edge or a graze.
+    /// There the answer may be a hit that is not [certain](crate::RayCast::is_certain), or undecided, where the default
+    /// options decide.
     #[must_use]
     pub fn lean() -> Self {
         Self {
@@ -335,15 +336,16 @@ pub struct LinearCastOptions<V: Vector> {
     /// The distance at which the shapes count as touching: the cast stops that far from contact. A negative value is
     /// taken for zero. Default: 0.
     pub target_distance: V::Scalar,
-    /// What to answer where the shapes touch at the start. To step a world from contact to contact, take
+    /// What to answer if the shapes touch at the start. To step a world from contact to contact, take
     /// [`StartInContact::IfDeeper`]. Default: [`StartInContact::Report`].
     pub start_in_contact: StartInContact,
     /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
     /// of rounding always ends the iteration. A negative value and NaN are taken for zero. Default: 0.
     pub tolerance: V::Scalar,
-    /// The iterations after which to give up, those of second looks included. Default: 200.
+    /// The iterations after which to give up, those of repeated searches included. Default: 200.
     pub max_iterations: usize,
-    /// What the last frame tells of the direction from `b` to `a` at contact. Default: nothing.
+    /// The warm start from the last frame's answer, which predicts the direction from `b` to `a` at contact. Default:
+    /// none.
     pub warm_start: Option<WarmStart<V>>,
     /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
     pub sub_algorithm: SubAlgorithm,
@@ -360,12 +362,12 @@ impl<V: Vector> LinearCastOptions<V> {
         Self { extra: AtStart::named(), ..Self::lean() }
     }
 
-    /// The default options, naming no more machine code than Algorithm 3 and the closed forms for points and balls: a
+    /// The default options, with no machine code besides Algorithm 3 and the closed forms for points and balls: a
     /// program in which all options are lean has three tenths of the code for linear casts.
     ///
-    /// What is left out is the faster search of [`CastMethod::Portal`], as in [`RayCastOptions::lean`], and all looks
-    /// at the start beyond that of the cast. Of shapes that touch or overlap there the hit has a point of both, but no
-    /// normal, and it is certain only where the search happens to end with points of both around the start. With
+    /// The faster search of [`CastMethod::Portal`] is left out, as in [`RayCastOptions::lean`], and so are all
+    /// measurements at the start besides the cast itself. If shapes touch or overlap there, the hit has a point of
+    /// both, but no normal. It is certain only if the search happens to end with points of both around the start. With
     /// [`StartInContact::IfDeeper`] shapes that may be in contact at the start are
     /// [undecided](crate::Outcome::Undecided).
     #[must_use]

@@ -1,4 +1,4 @@
-//! Rays, and the velocities that make rays of shapes that move.
+//! Rays, and the velocities of moving shapes, from which rays are made.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -9,9 +9,9 @@ use crate::{LinearCastOptions, RayCastError, RayCastOptions, RigidMotion};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ray<V> {
-    /// Where it starts.
+    /// Its start.
     pub source: V,
-    /// Where it goes, and the unit of λ.
+    /// Its direction, which is the unit of λ.
     pub direction: V,
 }
 
@@ -22,19 +22,19 @@ impl<V: Vector> Ray<V> {
         self.source + self.direction * lambda
     }
 
-    /// The same ray, put together of its coordinates.
+    /// The same ray, assembled from its coordinates.
     ///
-    /// A ray that some call takes as a whole, in a rare case or behind `dyn`, is kept in memory as it came, written in
-    /// pieces of two numbers from its beginning. A direction read from there lies across two of them, and a processor
-    /// waits until both are written, longer than a closed form takes. Of coordinates, the compiler makes in memory what
-    /// each call needs.
+    /// If some call takes a ray as a whole, in a rare case or behind `dyn`, the ray is kept in memory as it came,
+    /// written in pieces of two numbers from its beginning. A direction read from there lies across two of them, and a
+    /// processor waits until both are written, longer than a closed form takes. From coordinates, the compiler writes
+    /// to memory what each call needs.
     #[inline(always)]
     pub(crate) fn by_coordinates(self) -> Self {
         let copied = |v: V| V::from_fn(|i| v.get(i));
         Self { source: copied(self.source), direction: copied(self.direction) }
     }
 
-    /// The error of a ray that cannot be cast, or not with these options.
+    /// The error of a ray that cannot be cast, with these options.
     pub(crate) fn check(&self, options: &RayCastOptions<V>) -> Result<(), RayCastError> {
         // Zero times what is not finite is NaN; a sum that overflows is looked at coordinate by coordinate.
         if (self.source + self.direction).dot(V::ZERO) != V::Scalar::ZERO {
@@ -63,8 +63,8 @@ pub(crate) fn check_finite<V: Vector>(parameter: &'static str, vector: V) -> Res
     }
 }
 
-/// The error of the limits of a cast of bodies that are none. Within an infinite target distance of one another are
-/// any two bodies at any time, but a body swept by that is none.
+/// The error of limits that are invalid for a cast of two bodies. With an infinite target distance any two bodies
+/// would touch at any time, and a body swept by it would not be a body.
 pub(crate) fn check_limits<S: Scalar>(max_time: S, target_distance: S) -> Result<(), RayCastError> {
     let target = if target_distance < S::infinity() { target_distance } else { S::nan() };
     check_numbers([("max_time", max_time), ("target_distance", target)])
@@ -87,7 +87,7 @@ impl<V: Vector> Motion<V> {
         [self.velocity_a, self.velocity_b].map(RigidMotion::translation)
     }
 
-    /// The error of a motion that is none, or cannot be cast with these options.
+    /// The error of a motion that is invalid, or cannot be cast with these options.
     pub(crate) fn check(&self, options: &LinearCastOptions<V>) -> Result<(), RayCastError> {
         check_finite("velocity_a", self.velocity_a)?;
         check_finite("velocity_b", self.velocity_b)?;

@@ -33,13 +33,13 @@ use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit
 /// - If the source is in the target, or no farther from it than its own error, the answer is a hit at λ = 0 with no
 ///   normal, whatever the direction.
 /// - If the source is outside, by however little, a ray that leaves or slides past the target is a miss.
-/// - A ray that grazes the target within rounding may be a hit or a miss. A hit is certain where
-///   [`upper`](RayCast::upper) is finite ([`is_certain`](RayCast::is_certain)); elsewhere the status is
+/// - A ray that grazes the target within rounding may be a hit or a miss. A hit is certain if
+///   [`upper`](RayCast::upper) is finite ([`is_certain`](RayCast::is_certain)); otherwise the status is
 ///   [`Status::Stalled`].
 /// - The end of the ray, [`max_lambda`](RayCastOptions::max_lambda), belongs to the ray.
-/// - A ray can begin beyond its source, at [`min_lambda`](RayCastOptions::min_lambda), which belongs to the ray: a
-///   shadow ray leaves the surface that it starts on in this way. If it begins in the target, the answer is a hit
-///   there, with no normal.
+/// - A ray can begin beyond its source, at [`min_lambda`](RayCastOptions::min_lambda), which belongs to the ray. So a
+///   shadow ray can leave the surface that it starts on. If the ray begins in the target, the answer is a hit there,
+///   with no normal.
 /// - [`ray_exit`](crate::ray_exit) tells where the ray leaves the target again.
 ///
 /// # Accuracy
@@ -61,7 +61,7 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
     }
 }
 
-/// [`ray_cast`], showing an observer every iterate.
+/// [`ray_cast`] with an observer that sees every iterate.
 ///
 /// # Errors
 /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
@@ -82,11 +82,11 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     }
 }
 
-/// The cast where the shape knows for certain, in plain numbers, where the ray enters it, or that its line misses.
+/// The cast by the certain crossing of the shape in plain numbers, if there is one.
 ///
-/// A closer look is left to [`searched`]: beside the plain one it made the answer go through memory, and rays at balls
-/// and boxes took 15 to 30 % more instructions. And the shape is asked here, not by [`certain`]: through a closure rays
-/// at balls and cylinders took 4 % more.
+/// Twice the precision is left to [`searched`]: in the same function it made the answer go through memory, and rays
+/// at balls and boxes took 15 to 30 % more instructions. And the shape is called here, not by [`certain`]: through a
+/// closure rays at balls and cylinders took 4 % more.
 #[inline(always)]
 fn plainly<S: SupportMap + ?Sized>(
     target: &S,
@@ -99,7 +99,7 @@ fn plainly<S: SupportMap + ?Sized>(
     certain(target.certain_crossing(LineQuery::new(ray.source, ray.direction))?, ray, options)
 }
 
-/// The cast where that is not so in plain numbers.
+/// The cast if nothing is certain in plain numbers.
 #[inline(never)]
 fn searched<S: SupportMap + ?Sized>(
     target: &S,
@@ -116,7 +116,7 @@ fn searched<S: SupportMap + ?Sized>(
 }
 
 compiled_once! {
-    /// The cast by a search, of a body that is the shape.
+    /// The cast by a search, for a body that is the shape.
     fn by_search<V>(
         body: &mut dyn CastBody<Vector = V>,
         shape: Shape<'_, V>,
@@ -137,9 +137,9 @@ compiled_once! {
 
 /// The cast of a ray that begins at [`min_lambda`](RayCastOptions::min_lambda).
 ///
-/// The place of that beginning on the line is known only to within a slack. So the ray is cast from a slack before it.
-/// A hit later than a slack behind it is a hit like any other. A hit that is earlier is reported at the beginning; its
-/// upper bound is where a ray that begins a slack behind it hits.
+/// The place of this beginning on the line is known only to within a slack. So the ray is cast from a slack before
+/// it. If the hit is later than a slack behind the beginning, it is an ordinary hit. An earlier hit is reported at
+/// the beginning; its upper bound is the hit of a ray that begins a slack behind it.
 #[cold]
 #[inline(never)]
 fn late<V: Vector>(
@@ -182,7 +182,7 @@ fn late<V: Vector>(
     }
 }
 
-/// What a cast says of a ray.
+/// The answer of a cast about a ray.
 #[inline(always)]
 fn answer<V: Vector>(cast: ObstacleCast<V>, ray: Ray<V>) -> RayCast<V> {
     let outcome = cast.outcome.map(|CastHit { lambda, normal, .. }| {

@@ -10,15 +10,16 @@ use num_traits::Float as _;
 use crate::cast::is_plain;
 use crate::{Outcome, Ray, RayCast, RayCastError, RayCastOptions, ray_cast};
 
-/// Rays after which a batch forgets the warm start, so that its pieces can be cast on any number of threads and come
-/// out alike.
+/// Rays after which a batch drops the warm start, so that its pieces can be cast on any number of threads with the
+/// same answers.
 const RAYS_PER_PIECE: usize = 256;
 
-/// Casts many rays against one shape, in their order; each begins with [what the one before tells](crate::WarmStart).
+/// Casts many rays against one shape, in their order, each with the [warm start](crate::WarmStart) of the one before.
 ///
-/// Rays that are near one another, such as those of a picture or a lidar, then take fewer support points each. The hits
-/// and misses are those of [`ray_cast`], within the same bounds; the last digits may differ from those of a cast that
-/// begins otherwise. Every 256 rays the warm start of the options is taken again, so that batches can be cut there.
+/// Rays that are near one another, such as those of a picture or a lidar, then take fewer support points each. The
+/// hits and misses are those of [`ray_cast`], within the same bounds; the last digits may differ from those of a cast
+/// that begins otherwise. Every 256 rays the warm start of the options is used again, so that batches can be cut
+/// there.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};
@@ -64,7 +65,7 @@ pub fn par_ray_casts<S: SupportMap + Sync + ?Sized>(
     rays.par_chunks(RAYS_PER_PIECE).flat_map_iter(|piece| ray_casts(target, piece, options)).collect()
 }
 
-/// Where a ray enters a shape, in numbers alone: what columns are made of.
+/// Where a ray enters a shape, as plain numbers for columns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
@@ -73,17 +74,16 @@ pub fn par_ray_casts<S: SupportMap + Sync + ?Sized>(
     serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
 )]
 pub struct RayEntry<V: Vector> {
-    /// The parameter of the hit. Infinity is a certain miss, and NaN says that the cast ended
-    /// [undecided](Outcome::Undecided).
+    /// The parameter of the hit. Infinity is a certain miss, and NaN an [undecided](Outcome::Undecided) cast.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lambda: V::Scalar,
-    /// As [`RayCast::lower`].
+    /// The same as [`RayCast::lower`].
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// As [`RayCast::upper`].
+    /// The same as [`RayCast::upper`].
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
-    /// The unit outward normal where the ray enters; zero where the source is inside, and of a miss.
+    /// The unit outward normal where the ray enters; zero if the source is inside, and for a miss.
     pub normal: V,
 }
 
@@ -101,8 +101,8 @@ impl<V: Vector> From<RayCast<V>> for RayEntry<V> {
 /// Casts many rays against one shape, and writes where each enters into a slice. Nothing is allocated.
 ///
 /// Each answer is that of [`ray_cast`] to the last bit, whatever its neighbours are: the same λ, bounds and normal.
-/// Balls, boxes, capsules and hulls with facets, and any of these posed, are asked of several rays at a time, and the
-/// rays that are in doubt then are cast alone, as are those at other shapes. For a shape without a [closed
+/// Balls, boxes, capsules and hulls with facets, also posed, are tested against several rays at a time. Rays that are
+/// then in doubt are cast alone, and so are rays against other shapes. For a shape without a [closed
 /// form](CrossedByLine) there is [`ray_casts`](crate::ray_casts). With the feature `simd`, the widest vector
 /// instructions of the processor are chosen at run time.
 ///
@@ -121,10 +121,10 @@ impl<V: Vector> From<RayCast<V>> for RayEntry<V> {
 /// ```
 ///
 /// # Errors
-/// That of the first ray that [`ray_cast`] has one for; its answer is NaN, and all others are written.
+/// The first error that [`ray_cast`] has for a ray. The answer of such a ray is NaN, and all others are written.
 ///
 /// # Panics
-/// If there are not as many answers as rays.
+/// If the number of answers is not the number of rays.
 pub fn ray_entries_into<S: CrossedByLine + ?Sized>(
     target: &S,
     rays: &[Ray<S::Vector>],
@@ -165,7 +165,7 @@ pub fn ray_entries_into<S: CrossedByLine + ?Sized>(
 
 compiled_once! {
     #[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
-    /// The lines of up to [`LINES`] rays, the last as often as there is room.
+    /// The lines of up to [`LINES`] rays; the last one fills the remaining places.
     fn gather<V>(rays: &[Ray<V>], lines: &mut Lines<<V as Vector>::Scalar>) -> () {
         struct Gather<'a, V: Vector>(&'a [Ray<V>; LINES], &'a mut Lines<V::Scalar>);
         impl<V: Vector> Loop for Gather<'_, V> {
@@ -194,8 +194,8 @@ compiled_once! {
 }
 
 compiled_once! {
-    /// The answers that are known of rays that end at some parameter; what is not known of a ray, though of its line,
-    /// is unknown from here on.
+    /// The known answers of rays that end at some parameter. If only the answer for a ray's line is known, and not for
+    /// the ray, it is unknown from here on.
     fn scatter<V>(
         lines: &mut Lines<<V as Vector>::Scalar>,
         end: <V as Vector>::Scalar,

@@ -22,13 +22,13 @@ use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, S
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// The line of the ray is cast from beyond the shape back to the source, and certified as by [`ray_cast`]. Where that
-/// line first enters the shape, the ray leaves it.
+/// The line of the ray is cast from beyond the shape back to the source, and certified like a [`ray_cast`]. Where
+/// this line enters the shape, the ray leaves it.
 ///
-/// - A ray that meets the shape nowhere between [`min_lambda`](RayCastOptions::min_lambda) and
+/// - A ray with no point of the shape between [`min_lambda`](RayCastOptions::min_lambda) and
 ///   [`max_lambda`](RayCastOptions::max_lambda) is a miss.
 /// - A ray that ends in the shape is a hit at its end, with no normal.
-/// - The [`warm_start`](RayCastOptions::warm_start) of the options is of the normal at the exit.
+/// - The [`warm_start`](RayCastOptions::warm_start) of the options predicts the normal at the exit.
 ///
 /// # Errors
 /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
@@ -95,7 +95,7 @@ compiled_once! {
 }
 
 impl<V: Vector> RayExit<V> {
-    /// Of a ray that begins at a parameter of the line: what is in the shape before that is not of the ray.
+    /// For a ray that begins at a parameter of the line: points of the shape before it do not count.
     fn on_ray(self, begin: V::Scalar) -> Self {
         let is_bounded = self.lower >= begin;
         let lower = if is_bounded { self.lower } else { -V::Scalar::infinity() };

@@ -10,17 +10,17 @@ use crate::simplex::MAX_POINTS;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
-    /// The bracket is as narrow as was asked for, or as narrow as rounding allows; of a hit it has an upper bound, too.
+    /// The bracket is as narrow as was asked for, or as narrow as rounding allows. A hit also has an upper bound.
     Converged,
-    /// The allowed iterations were used up before the bracket was that narrow.
+    /// The iterations were used up before the bracket was that narrow.
     IterationLimit,
-    /// No further progress was possible in floating point before the bracket was that narrow, as of a hit that may be
-    /// a miss; or a support map returned numbers that are not finite.
+    /// No further progress was possible in floating point before the bracket was that narrow, for example if a hit may
+    /// be a miss; or a support map returned numbers that are not finite.
     Stalled,
 }
 
 impl Status {
-    /// What has converged to a hit without a bound has stalled.
+    /// The status of an outcome: a search that converged to a hit without an upper bound has stalled.
     pub(crate) fn of<H, V>(self, outcome: &Outcome<H, V>, is_bounded: bool) -> Self {
         let is_open = outcome.is_hit() && !is_bounded;
         if is_open && self == Self::Converged { Self::Stalled } else { self }
@@ -32,7 +32,7 @@ impl Status {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Distance<V: Vector> {
-    /// The distance of the two shapes; 0 where they overlap. Where they touch, so that the measured distance is smaller
+    /// The distance of the two shapes; 0 where they overlap. If they touch, so that the measured distance is smaller
     /// than its own error, it is the measured distance.
     pub distance: V::Scalar,
     /// The distance is certainly not less: a plane separates the shapes by this much.
@@ -46,12 +46,12 @@ pub struct Distance<V: Vector> {
     pub point_a: V,
     /// The point of `b` closest to `a`, in the world; where the shapes overlap, a point in both, but for rounding.
     pub point_b: V,
-    /// The unit vector from `b` to `a`, across which a plane separates the shapes by [`lower`](Self::lower). It is
-    /// there also where the shapes touch, and `None` where they overlap by more than rounding.
+    /// The unit vector from `b` to `a`, across which a plane separates the shapes by [`lower`](Self::lower). It is also
+    /// given where the shapes touch, and is `None` where they overlap by more than rounding.
     ///
-    /// It is the plane's and not the direction of `point_a − point_b`, which near contact has fewer digits: that
-    /// difference is the distance times the normal to within √(2·`upper`·(`upper` − `lower`)), which is how far it
-    /// may lean, and 64ε of the sizes of both shapes and their offset.
+    /// It is the normal of the plane, and not the direction of `point_a − point_b`, which has fewer digits near
+    /// contact. `point_a − point_b` is the distance times the normal, to within √(2·`upper`·(`upper` − `lower`))
+    /// plus 64ε of the sizes of both shapes and their offset.
     pub normal: Option<V>,
     /// How the iteration ended.
     pub status: Status,
@@ -60,7 +60,7 @@ pub struct Distance<V: Vector> {
 }
 
 impl<V: Vector> Distance<V> {
-    /// The same of the shapes in the other order: from `b` to `a`.
+    /// The answer for the shapes in the other order: from `b` to `a`.
     #[inline(always)]
     pub fn reversed(self) -> Self {
         Self { point_a: self.point_b, point_b: self.point_a, normal: self.normal.map(|n| -n), ..self }
@@ -72,27 +72,27 @@ impl<V: Vector> Distance<V> {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SignedDistance<V: Vector> {
-    /// The distance where the shapes are apart; where they overlap, minus the penetration depth: the length of the
-    /// shortest translation of `a` after which they have no interior point in common.
+    /// The distance where the shapes are apart. Where they overlap, minus the penetration depth, which is the length of
+    /// the shortest translation of `a` after which they have no interior point in common.
     pub signed_distance: V::Scalar,
     /// The signed distance is certainly not less: this is proved by planes across [`normal`](Self::normal). Minus
     /// infinity where a support map returned numbers that are not finite.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
     pub lower: V::Scalar,
     /// The signed distance is certainly not more: two points of the shapes are this far apart, or a polytope within the
-    /// difference `A − B` reaches this far around zero. Infinity where a support map returned numbers that are not
-    /// finite.
+    /// difference `A − B` contains a ball of this radius about zero. Infinity where a support map returned numbers that
+    /// are not finite.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// The unit vector from `b` to `a`. If `a` is moved along it by the depth, the shapes no longer overlap. Where
     /// several ways out are equally short, it is the direction of one of them.
     pub normal: V,
     /// The point of `a` closest to `b`, or deepest in it. It is in `a` but for rounding, 8ε of the sizes of both shapes
-    /// and their offset, however the search ended: what is not known of the way out is in the bounds.
+    /// and their offset, however the search ended. Uncertainty of the way out is in the bounds.
     pub point_a: V,
-    /// The point of `b` such that `point_a − point_b` is the signed distance times the normal, in the same way. The
-    /// normal is that of a plane, across which points of curved shapes may be off by √(2·s·(`upper` − `lower`)), with
-    /// `s` the sum of both sizes and the offset.
+    /// The point of `b` such that `point_a − point_b` is the signed distance times the normal, with the same accuracy.
+    /// The normal is that of a plane, across which points of curved shapes may be off by √(2·s·(`upper` − `lower`)),
+    /// with `s` the sum of both sizes and the offset.
     pub point_b: V,
     /// Whether the shapes have a point in common, touching included: whether `signed_distance` is not positive. It is
     /// certain where `lower` and `upper` have the same sign.
@@ -102,12 +102,12 @@ pub struct SignedDistance<V: Vector> {
     /// The number of support points computed of each shape.
     pub iterations: usize,
     /// The number of facets of the last polytope that did not have to be expanded, since no way out through them is
-    /// shorter. 0 where no polytope was needed.
+    /// shorter. 0 if no polytope was needed.
     pub unexpanded: usize,
 }
 
 impl<V: Vector> SignedDistance<V> {
-    /// The same of the shapes in the other order: from `b` to `a`.
+    /// The answer for the shapes in the other order: from `b` to `a`.
     pub fn reversed(self) -> Self {
         Self { normal: -self.normal, point_a: self.point_b, point_b: self.point_a, ..self }
     }
@@ -118,13 +118,13 @@ impl<V: Vector> SignedDistance<V> {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Intersection<V: Vector> {
-    /// Whether the shapes have a point in common. This is certain if `status` is [`Status::Converged`], and otherwise
-    /// only the better guess; [`decided`](Self::decided) tells the two apart. It agrees with [`Distance::overlap`].
+    /// Whether the shapes have a point in common. This is certain if `status` is [`Status::Converged`], and otherwise a
+    /// guess; [`decided`](Self::decided) tells the two apart. It agrees with [`Distance::overlap`].
     pub overlap: bool,
     /// A unit vector along which a plane separates the shapes, pointing from `b` to `a`; `None` where they overlap.
     ///
     /// Its components are rounded. So if the gap is as small as rounding, a few ε of the extent of both shapes, the
-    /// slab that the rounded axis leaves between the shapes may be negative, by an ulp of that extent.
+    /// width of the slab across the rounded axis may be negative, by an ulp of that extent.
     pub axis: Option<V>,
     /// How the iteration ended.
     pub status: Status,
@@ -133,7 +133,7 @@ pub struct Intersection<V: Vector> {
 }
 
 impl<V: Vector> Intersection<V> {
-    /// `Some(overlap)` where that is certain, `None` where the iteration ended undecided.
+    /// `Some(overlap)` if it is certain, `None` if the iteration ended undecided.
     #[must_use]
     pub fn decided(&self) -> Option<bool> {
         (self.status == Status::Converged).then_some(self.overlap)
@@ -145,19 +145,19 @@ impl<V: Vector> Intersection<V> {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Outcome<H, V> {
-    /// A hit. It is certain where the upper bound of the answer is finite; elsewhere the status is not
+    /// A hit. It is certain if the upper bound of the answer is finite; otherwise the status is not
     /// [`Status::Converged`].
     Hit(H),
     /// A miss, which is certain: a plane proves it.
     Miss(Miss<V>),
     /// The iteration ended, for the reason given by the status, before a hit or a miss was certain. Nothing is hit
-    /// before the lower bound of the answer, so that a program which has to choose is safe if it takes that for the
+    /// before the lower bound of the answer. So if a program has to choose, it is safe to take the lower bound for the
     /// hit.
     Undecided,
 }
 
 impl<H, V> Outcome<H, V> {
-    /// The hit, if it is one.
+    /// The hit, if there is one.
     #[must_use]
     pub fn hit(self) -> Option<H> {
         match self {
@@ -166,7 +166,7 @@ impl<H, V> Outcome<H, V> {
         }
     }
 
-    /// The same with another way to say a hit.
+    /// The outcome with the hit converted.
     pub(crate) fn map<G>(self, of: impl FnOnce(H) -> G) -> Outcome<G, V> {
         match self {
             Self::Hit(hit) => Outcome::Hit(of(hit)),
@@ -175,13 +175,13 @@ impl<H, V> Outcome<H, V> {
         }
     }
 
-    /// Whether it is a hit.
+    /// Whether this is a hit.
     #[must_use]
     pub const fn is_hit(&self) -> bool {
         matches!(self, Self::Hit(_))
     }
 
-    /// Whether it is certain, as a hit with a bound and every miss is.
+    /// Whether this is certain: every miss is, and a hit with an upper bound.
     pub(crate) const fn is_certain(&self, is_bounded: bool) -> bool {
         match self {
             Self::Hit(_) => is_bounded,
@@ -196,7 +196,7 @@ impl<H, V> Outcome<H, V> {
         matches!(self, Self::Undecided)
     }
 
-    /// Whether it is a certain miss.
+    /// Whether this is a certain miss.
     #[must_use]
     pub const fn is_miss(&self) -> bool {
         matches!(self, Self::Miss(_))
@@ -204,7 +204,7 @@ impl<H, V> Outcome<H, V> {
 }
 
 impl<H, V: Vector> Outcome<H, V> {
-    /// What it tells the next frame, given what this one was told.
+    /// The warm start for the next frame, from this outcome and the warm start of this frame.
     fn warm_start(&self, before: Option<WarmStart<V>>, normal: impl FnOnce(&H) -> Option<V>) -> Option<WarmStart<V>> {
         match self {
             Self::Hit(hit) => normal(hit).map(|normal| WarmStart::after(before, normal)).or(before),
@@ -222,41 +222,42 @@ pub struct Miss<V> {
     /// pointing from the shape to the ray; a good [first axis](crate::WarmStart::new) for a similar query.
     ///
     /// Its components are rounded, so that at a distance `L` along the ray the plane is off by `L` times half an ulp.
-    /// In `f32`, a point of the ray that is a million sizes of the shape away may be on the wrong side of it.
+    /// In `f32`, a point of the ray at a distance of a million sizes from the shape may be on the wrong side of the
+    /// plane.
     pub axis: V,
 }
 
 /// The answer of [`ray_cast`](crate::ray_cast), [`linear_cast`](crate::linear_cast) or
-/// [`motion_cast`](crate::motion_cast): the time is the parameter of the ray or that of the motion.
+/// [`motion_cast`](crate::motion_cast). Its *time* is the parameter of the ray or of the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound(serialize = "H: serde::Serialize, V: crate::data::VectorData")))]
 #[cfg_attr(feature = "serde", serde(bound(deserialize = "H: serde::Deserialize<'de>, V: crate::data::VectorData")))]
 pub struct Cast<H, V: Vector> {
-    /// Hit, miss, or undecided. The axis of a miss of two bodies points from `b` to `a`; of a motion that turns it is
+    /// Hit, miss, or undecided. The axis of a miss of two bodies points from `b` to `a`. For a motion that turns it is
     /// the normal of the last separating plane.
     pub outcome: Outcome<H, V>,
     /// The bodies, or the ray and its target, have no point in common before this time. For a miss it is infinite, or
-    /// the end of a motion that turns; unless only rounding decides whether the cast ends before a hit. Of bodies that
-    /// may [begin in contact](crate::StartInContact::IfDeeper), nothing that counts as a hit happens before.
+    /// the end of a motion that turns, unless only rounding decides whether the cast ends before a hit. If bodies may
+    /// [begin in contact](crate::StartInContact::IfDeeper), no hit in that sense happens before.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// They have a point in common at this time. It need not be their first, if bodies without an inside have passed
-    /// through one another in between. It is infinite where no such time is known: for a miss, and for a hit that may
-    /// be a miss, since they graze each other, or touch at the start, within rounding. Bodies that may [begin in
+    /// They have a point in common at this time. It need not be the first, if bodies without an inside have passed
+    /// through one another in between. It is infinite if no such time is known: for a miss, and for a hit that may be a
+    /// miss, since the bodies graze each other, or touch at the start, within rounding. Bodies that may [begin in
     /// contact](crate::StartInContact::IfDeeper) have got deeper, or touched again, by then.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// How the search ended.
     pub status: Status,
-    /// The number of support points computed of each shape. Where bodies that move straight overlap at the start, those
-    /// of [`distance`](crate::distance) and [`signed_distance`](crate::signed_distance) as well.
+    /// The number of support points computed of each shape. If bodies that move straight overlap at the start, those of
+    /// [`distance`](crate::distance) and [`signed_distance`](crate::signed_distance) are included.
     pub iterations: usize,
 }
 
 impl<H, V: Vector> Cast<H, V> {
-    /// Whether the outcome is certain: a hit is where the upper bound is finite, and a miss always.
+    /// Whether the outcome is certain: a hit is if the upper bound is finite, and a miss always.
     #[must_use]
     pub fn is_certain(&self) -> bool {
         self.outcome.is_certain(self.upper < V::Scalar::infinity())
@@ -264,8 +265,8 @@ impl<H, V: Vector> Cast<H, V> {
 }
 
 impl<V: Vector> RayCast<V> {
-    /// What this answer tells the [cast of the next frame](crate::RayCastOptions::warm_start), given what it was told
-    /// itself.
+    /// The warm start for the [cast of the next frame](crate::RayCastOptions::warm_start), from this answer and its own
+    /// warm start.
     #[must_use]
     pub fn warm_start(&self, before: Option<WarmStart<V>>) -> Option<WarmStart<V>> {
         self.outcome.warm_start(before, |hit| hit.normal)
@@ -273,8 +274,8 @@ impl<V: Vector> RayCast<V> {
 }
 
 impl<V: Vector> LinearCast<V> {
-    /// What this answer tells the [cast of the next frame](crate::LinearCastOptions::warm_start), given what it was
-    /// told itself.
+    /// The warm start for the [cast of the next frame](crate::LinearCastOptions::warm_start), from this answer and its
+    /// own warm start.
     #[must_use]
     pub fn warm_start(&self, before: Option<WarmStart<V>>) -> Option<WarmStart<V>> {
         self.outcome.warm_start(before, |hit| hit.normal)
@@ -294,11 +295,11 @@ pub type MotionCast<V> = Cast<Impact<V>, V>;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RayHit<V: Vector> {
-    /// The hit parameter, in units of the ray's direction; 0 where the source is in the target.
+    /// The hit parameter, in units of the ray's direction; 0 if the source is in the target.
     pub lambda: V::Scalar,
     /// The point that is hit, in the frame of the ray and the target: the source plus λ times the direction.
     pub point: V,
-    /// The unit outward normal there; at an edge or a vertex, one of the normals. `None` where the ray begins in the
+    /// The unit outward normal there; at an edge or a vertex, one of the normals. `None` if the ray begins in the
     /// target.
     pub normal: Option<V>,
 }
@@ -309,10 +310,10 @@ pub struct RayHit<V: Vector> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct RayExit<V: Vector> {
-    /// Where the ray leaves, with the outward normal there; a miss where no point of the ray is in the target; or
+    /// Where the ray leaves, with the outward normal there; a miss if no point of the ray is in the target; or
     /// undecided.
     pub outcome: Outcome<RayHit<V>, V>,
-    /// The point of the ray at this parameter is in the target; minus infinity where no such point is known.
+    /// The point of the ray at this parameter is in the target; minus infinity if no such point is known.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
     pub lower: V::Scalar,
     /// No point of the ray after this parameter is in the target; minus infinity for a miss.
@@ -325,7 +326,7 @@ pub struct RayExit<V: Vector> {
 }
 
 impl<V: Vector> RayExit<V> {
-    /// Whether the outcome is certain: a hit is where the lower bound is finite, and a miss always.
+    /// Whether the outcome is certain: a hit is if the lower bound is finite, and a miss always.
     #[must_use]
     pub fn is_certain(&self) -> bool {
         self.outcome.is_certain(self.lower > -V::Scalar::infinity())
@@ -336,30 +337,31 @@ impl<V: Vector> RayExit<V> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Impact<V: Vector> {
-    /// The time of first contact; 0 where the bodies touch or overlap at the start, unless only what [goes
+    /// The time of first contact; 0 if the bodies touch or overlap at the start, unless only a motion that [goes
     /// deeper](crate::StartInContact::IfDeeper) counts.
     pub time: V::Scalar,
     /// A point of contact, in the world, at that time. With a [target
-    /// distance](crate::LinearCastOptions::target_distance) it is a point of `b`. Where the bodies overlap at the
-    /// start, it is a point in both but for rounding, as of [`distance`](crate::distance).
+    /// distance](crate::LinearCastOptions::target_distance) it is a point of `b`. If the bodies overlap at the start,
+    /// it is a point in both but for rounding, as in [`distance`](crate::distance).
     pub point: V,
-    /// The unit normal of contact, out of `b` towards `a`. Where the bodies overlap at the start by more than rounding,
-    /// it is `None`; with [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.
+    /// The unit normal of contact, out of `b` towards `a`. If the bodies overlap at the start by more than rounding, it
+    /// is `None`; with [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.
     pub normal: Option<V>,
 }
 
-/// What an observer is shown in every iteration.
+/// The state of an iteration that an observer sees.
 ///
 /// Its points and vectors are those of the configuration space obstacle, relative to the query point: the points of
-/// `A − B` for [`distance`](crate::distance) and [`intersects`](crate::intersects), and for casts the points `x − p` of
-/// `{x} − C`, with the current point `x` of the ray. So in every case the iteration looks for zero.
+/// `A − B` for [`distance`](crate::distance) and [`intersects`](crate::intersects), and for casts the points `x − p`
+/// of `{x} − C`, with the current point `x` of the ray. So in every case the iteration searches for zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Iterate<'a, V: Vector> {
-    /// The number of the iterate, from 0. The first has an empty simplex and the first direction for its `v`; or, if a
-    /// shape knows its [closest point](convex_support::SupportMap::core_closest_point), that point for its simplex.
+    /// The number of the iterate, from 0. The first has an empty simplex and the first direction for its `v`. If a
+    /// shape knows its [closest point](convex_support::SupportMap::core_closest_point), the first simplex is that
+    /// point.
     pub iteration: usize,
     /// The vertices of the simplex that `v` lies in (the paper's `W`, `S_k` in the book), relative to the query point,
-    /// in units of `scale`; none at first.
+    /// in units of `scale`; empty at first.
     pub simplex: &'a [V],
     /// The point of the simplex closest to zero (`V_k`), in units of `scale`; in the first iterate, the first
     /// direction.
@@ -371,12 +373,12 @@ pub struct Iterate<'a, V: Vector> {
     pub scale: V::Scalar,
     /// The lower bound: of the distance of the cores, or of the hit parameter λ.
     pub lower: V::Scalar,
-    /// The upper bound of the same.
+    /// The upper bound of the same value.
     pub upper: V::Scalar,
 }
 
 impl<V: Vector> Iterate<'_, V> {
-    /// Shows the same of the bodies in the other order.
+    /// Shows the iterate for the bodies in the other order.
     #[inline(always)]
     pub(crate) fn reversed(&self, observer: impl FnOnce(Iterate<'_, V>)) {
         let mut simplex = [V::ZERO; MAX_POINTS];

@@ -1,4 +1,4 @@
-//! The signed distance of two shapes: how far apart, or how deep in one another.
+//! The signed distance of two shapes: how far apart they are, or how deep they overlap.
 
 use convex_support::{Core, SupportMap, Vector, compiled_once};
 
@@ -9,7 +9,7 @@ use crate::separation::{Closer, Cores, OfOverlap, Wanted, direct, separation};
 use crate::shape::Shape;
 use crate::{Iterate, SignedDistance, SignedDistanceOptions};
 
-/// How far apart two shapes are, or how deep in one another, and which way out is the shortest.
+/// The distance of two shapes, or minus their depth if they overlap, with the shortest way out.
 ///
 /// ```
 /// use convex_support::{Cuboid, Posed, glam::DVec3};
@@ -28,9 +28,9 @@ use crate::{Iterate, SignedDistance, SignedDistanceOptions};
 /// With `C = A − B` and its support value `h`, the signed distance is `−min h(u)` over all unit vectors `u`, and the
 /// normal is `−u`. If the shapes are apart, zero is outside `C`, and this is the distance of the farthest plane that
 /// separates zero from `C`. If they overlap, zero is inside, and it is minus the distance of the nearest plane that
-/// supports `C`. Where the cores are apart, GJK finds both as the distance of the cores, less the radii. Where the
-/// cores overlap, an [expanding polytope](SignedDistance::unexpanded) proves that no way out is shorter than the one
-/// found; for two boxes the depth has a closed form.
+/// supports `C`. If the cores are apart, GJK finds both as the distance of the cores, less the radii. If the cores
+/// overlap, an [expanding polytope](SignedDistance::unexpanded) proves that no way out is shorter than the one found;
+/// for two boxes the depth has a closed form.
 // Left to the compiler, it is a call in some programs, in which a ball and a box take half as long again.
 #[inline(always)]
 pub fn signed_distance<A, B>(a: &A, b: &B, options: SignedDistanceOptions<A::Vector>) -> SignedDistance<A::Vector>
@@ -41,9 +41,10 @@ where
     watched(a, b, options, &mut Observer::none())
 }
 
-/// [`signed_distance`], showing an observer every iterate: those of [`distance`](crate::distance) as long as the cores
-/// may be apart. After that the simplex is the facet nearest to zero, `v` its foot, `w` the support point along its
-/// normal or between that and the best way out, and the bounds are those of the signed distance of the cores.
+/// [`signed_distance`] with an observer that sees every iterate. While the cores may be apart, the iterates are those
+/// of [`distance`](crate::distance). After that the simplex is the facet nearest to zero, `v` is the projection of
+/// zero on it, `w` the support point along its normal or between that normal and the best way out, and the bounds are
+/// those of the signed distance of the cores.
 #[inline(always)]
 pub fn signed_distance_with<A, B>(
     a: &A,
@@ -78,7 +79,7 @@ where
 }
 
 compiled_once! {
-    /// The signed distance by a search, of shapes that are in order, swapped or not.
+    /// The signed distance by a search, for shapes that are in order or swapped.
     fn by_search<V>(
         shapes: &dyn Shapes<Vector = V>,
         cores: [Core<V>; 2],
@@ -95,8 +96,8 @@ compiled_once! {
     }
 }
 
-/// [`signed_distance`] with the normal of the plane that proves its lower bound. Near contact it is known to what the
-/// search itself leaves, since a search in time looks again a moment later.
+/// [`signed_distance`] with the normal of the plane that proves its lower bound. Near contact it is only as accurate
+/// as the search itself, since a search in time measures again a moment later.
 #[inline]
 pub(crate) fn rough_signed_distance<V: Vector>(
     shapes: &dyn Shapes<Vector = V>,
@@ -111,7 +112,7 @@ pub(crate) fn rough_signed_distance<V: Vector>(
     })
 }
 
-/// [`signed_distance`] of shapes behind pointers: compiled once for all that rarely ask it.
+/// [`signed_distance`] of shapes behind pointers, compiled once for all callers that need it rarely.
 #[cold]
 #[inline(never)]
 pub(crate) fn signed_distance_of_any<V: Vector>(

@@ -1,15 +1,16 @@
-//! What the answer of one frame tells the cast of the next: the paper's frame coherence.
+//! A prediction from the answer of one frame for the cast of the next: the paper's frame coherence.
 
 use convex_support::{Scalar, Vector};
 
-/// How far a normal may turn from one frame to the next where nothing is known of it, in radians.
+/// How far a normal may turn from one frame to the next if nothing is known about it, in radians.
 const TURN: f64 = 0.015;
 
-/// Where a cast looks first: what the answer of one frame tells the cast of the next.
+/// A prediction of the normal for the next frame's cast, made from the answer of this frame.
 ///
-/// Each answer hands it out, given the one that it was found with; beside the last normal it tells how that turns from
-/// frame to frame, if it turns steadily, and how far it may be off. The next answer is as certain as any. What is told
-/// wrongly only takes support points; and where it would leave a cast in doubt, the cast begins again without it.
+/// The method `warm_start` of an answer makes it, from the answer and the warm start of its own cast. It holds the
+/// last normal, how the normal turns from frame to frame if it turns steadily, and how large the error may be. The
+/// next answer is as certain as any. A wrong prediction only costs support points. If it would leave a cast in doubt,
+/// the cast begins again without it.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, Posed, glam::DQuat, glam::DVec3};
@@ -33,7 +34,7 @@ const TURN: f64 = 0.015;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct WarmStart<V: Vector> {
-    /// The normal that is expected.
+    /// The predicted normal.
     pub(crate) axis: V,
     /// How the normal turned from the hit before to the last one.
     turn: V,
@@ -42,7 +43,7 @@ pub struct WarmStart<V: Vector> {
     known: Learned,
 }
 
-/// What a warm start knows; each is more than the one before.
+/// What a warm start knows; each variant knows more than the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Learned {
@@ -52,22 +53,22 @@ enum Learned {
     Normal,
     /// The turn and the error too.
     Turn,
-    /// The turn was foretold: the axis is a turn from the normal.
+    /// The turn was predicted: the axis is a turn from the normal.
     Foretold,
 }
 
 impl<V: Vector> WarmStart<V> {
-    /// Nothing but an axis: a guess of the normal, or of a separating axis.
+    /// A warm start with only an axis: a guess of the normal, or of a separating axis.
     #[must_use]
     pub const fn new(axis: V) -> Self {
         Self { axis, turn: V::ZERO, error: V::Scalar::ZERO, known: Learned::Guess }
     }
 
-    /// After a hit with this normal, found with what was told `before`.
+    /// The warm start after a hit with this normal, found with the warm start `before`.
     ///
-    /// What moves steadily turns its normal steadily, and the next one is then where the last turn is made once more,
-    /// to the square of that. But from face to face a normal jumps. So the last turn counts only if it was foretold by
-    /// the one before, to within a half; and by how much it was not, the next one may be off.
+    /// If bodies move steadily, the normal turns steadily, and repeating the last turn predicts the next normal to the
+    /// square of the turn. But from face to face a normal jumps. So the last turn counts only if the turn before
+    /// predicted it to within a half. The error of that prediction estimates the error of the next normal.
     pub(crate) fn after(before: Option<Self>, normal: V) -> Self {
         let first = Self { known: Learned::Normal, ..Self::new(normal) };
         let last = |before: Self| match before.known {
@@ -90,7 +91,7 @@ impl<V: Vector> WarmStart<V> {
         if self.known >= Learned::Turn { self.error } else { V::Scalar::from_f64(TURN) }
     }
 
-    /// The same of the bodies in the other order.
+    /// The warm start for the bodies in the other order.
     pub(crate) fn reversed(self) -> Self {
         Self { axis: -self.axis, turn: -self.turn, ..self }
     }

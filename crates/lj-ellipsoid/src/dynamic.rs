@@ -1,4 +1,4 @@
-//! Points whose dimension is known at run time only.
+//! Points whose dimension is known only at run time.
 
 use crate::ellipsoid::{Ellipsoid, radius_at, support_value};
 use crate::enclosing::{EnclosingIterate, Solution};
@@ -53,7 +53,7 @@ impl EllipsoidDyn {
         &self.shape.matrix
     }
 
-    /// The same in `N` dimensions, if it has as many.
+    /// The ellipsoid in `N` dimensions, if it has as many.
     #[must_use]
     pub fn in_dimension<const N: usize>(&self) -> Option<Ellipsoid<N>> {
         (self.dimension() == N).then(|| Ellipsoid::from_shape(&self.shape.clone().in_dimension(Const::<N>)))
@@ -142,7 +142,7 @@ fn copied<P: AsRef<[f64]>>(points: &[P]) -> Copied<Dynamic> {
 /// [`enclosing`](crate::enclosing()) for points of a dimension known at run time: slices of one length.
 ///
 /// # Errors
-/// As [`enclosing`](crate::enclosing()).
+/// Those of [`enclosing`](crate::enclosing()).
 ///
 /// # Panics
 /// If the points differ in length.
@@ -163,10 +163,10 @@ pub fn enclosing_dyn<P: AsRef<[f64]>>(points: &[P], options: EnclosingOptions) -
     enclosing_dyn_with(points, options, |_| {})
 }
 
-/// [`enclosing_dyn`], showing every iterate to `observer`.
+/// [`enclosing_dyn`] with an `observer` that sees every iterate.
 ///
 /// # Errors
-/// As [`enclosing`](crate::enclosing()).
+/// Those of [`enclosing`](crate::enclosing()).
 ///
 /// # Panics
 /// If the points differ in length.
@@ -209,7 +209,7 @@ impl InscribedDyn {
 /// [`inscribed`](crate::inscribed()) in a dimension known at run time: the half-spaces normalsᵢ·x ≤ offsetsᵢ.
 ///
 /// # Errors
-/// As [`inscribed`](crate::inscribed()).
+/// Those of [`inscribed`](crate::inscribed()).
 ///
 /// # Panics
 /// If there are not as many offsets as normals, or the normals differ in length.
@@ -227,7 +227,7 @@ pub fn inscribed_dyn<P: AsRef<[f64]>>(
 /// [`inscribed_in_hull`](crate::inscribed_in_hull()) for slices of one length as points; of 2 or 3 coordinates.
 ///
 /// # Errors
-/// As [`inscribed_in_hull`](crate::inscribed_in_hull()).
+/// Those of [`inscribed_in_hull`](crate::inscribed_in_hull()).
 ///
 /// # Panics
 /// If the points differ in length.

@@ -1,4 +1,4 @@
-//! The ellipsoid as it is returned.
+//! The ellipsoid of an answer.
 
 use crate::numerics::dimension::Const;
 use crate::numerics::twofold;
@@ -7,9 +7,10 @@ use crate::shape::Shape;
 /// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in N dimensions.
 ///
 /// It is kept by centre, orthonormal axes and semi-axes, which are accurate at any aspect ratio;
-/// [`matrix`](Self::matrix) is formed from them. The condition of X is the square of the aspect ratio, so beyond an
-/// aspect of 1e8 the doubles of X no longer tell the longest axis, and rounding may leave them without a Cholesky
-/// factor: use, store and print centre, semi-axes and axes (or the [rotation](Ellipsoid::<3>::rotation)) there.
+/// [`matrix`](Self::matrix) is formed from them. The condition of X is the square of the aspect ratio. So beyond an
+/// aspect of 1e8 the doubles of X no longer determine the longest axis, and rounding may leave them without a
+/// Cholesky factor: use, store and print centre, semi-axes and axes (or the [rotation](Ellipsoid::<3>::rotation))
+/// there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid<const N: usize> {
     center: [f64; N],
@@ -52,9 +53,10 @@ impl<const N: usize> Ellipsoid<N> {
     /// X, row by row, symmetric to the last bit, but beyond an aspect ratio of 1e8 perhaps not positive definite. For
     /// an ellipsoid within an affine hull it measures within the hull only (it is zero along the normals).
     ///
-    /// It is rounded by itself. That of an enclosing ellipsoid is rounded outward: it too holds every point in (x −
-    /// c)ᵀX(x − c) ≤ 1, evaluated in `f64` in any order or exactly. That of an inscribed one is rounded inward, and
-    /// proved to be within the body too, as long as that takes less than half of it: up to an aspect ratio of some 1e7.
+    /// It is rounded separately. The matrix of an enclosing ellipsoid is rounded outward: it too holds every point in
+    /// (x − c)ᵀX(x − c) ≤ 1, evaluated in `f64` in any order or exactly. The matrix of an inscribed one is rounded
+    /// inward, and proved to be within the body too, as long as the rounding takes less than half of it: up to an
+    /// aspect ratio of some 1e7.
     #[must_use]
     pub const fn matrix(&self) -> [[f64; N]; N] {
         self.matrix
@@ -66,16 +68,15 @@ impl<const N: usize> Ellipsoid<N> {
         self.log_det
     }
 
-    /// The logarithm of the volume; of the length or area where the ellipsoid lies in an affine hull, and 0 for a
-    /// point.
+    /// The logarithm of the volume; of the length or area if the ellipsoid lies in an affine hull, and 0 for a point.
     #[must_use]
     pub fn log_volume(&self) -> f64 {
         let rank = self.semi_axes.iter().filter(|a| **a > 0.0).count();
         crate::shape::log_unit_ball_volume(rank) - 0.5 * self.log_det
     }
 
-    /// |diag(1/a)·Rᵀ(x − c)|: 1 on the surface, less inside. Components across the affine hull of a flat ellipsoid are
-    /// not looked at.
+    /// The length |diag(1/a)·Rᵀ(x − c)|: 1 on the surface, less inside. Components across the affine hull of a flat
+    /// ellipsoid are ignored.
     #[must_use]
     pub fn radius_at(&self, x: impl Into<[f64; N]>) -> f64 {
         radius_at(&self.center, self.axes.as_flattened(), &self.semi_axes, &x.into())
@@ -87,9 +88,9 @@ impl<const N: usize> Ellipsoid<N> {
         self.radius_at(x) <= 1.0
     }
 
-    /// max direction·x over the ellipsoid, = direction·c + |diag(a)·R·direction|: how far it reaches along `direction`,
-    /// which need not be of unit length. Its sums are in twice the precision, so that it is right to a few roundings
-    /// however thin the ellipsoid.
+    /// The support value max direction·x over the ellipsoid, = direction·c + |diag(a)·R·direction|; the direction need
+    /// not be of unit length. Its sums are in twice the precision, so that it is right to a few roundings however thin
+    /// the ellipsoid is.
     #[must_use]
     pub fn support_value(&self, direction: impl Into<[f64; N]>) -> f64 {
         support_value(&self.center, self.axes.as_flattened(), &self.semi_axes, &direction.into())
@@ -159,8 +160,8 @@ impl Ellipsoid<3> {
     }
 }
 
-/// |diag(1/a)·R·(x − c)| over the semi-axes that are not zero. What is promised of points as evaluated in `f64` is promised of
-/// this very evaluation.
+/// The length |diag(1/a)·R·(x − c)| over the semi-axes that are not zero. Promises about points as evaluated in `f64`
+/// are about this evaluation.
 #[inline]
 pub(crate) fn radius_at(center: &[f64], axes: &[f64], semi_axes: &[f64], x: &[f64]) -> f64 {
     let n = center.len();
@@ -215,8 +216,8 @@ pub(crate) fn reach_at_most(axes: &[f64], semi_axes: &[f64], direction: &[f64]) 
     (square + n * f64::from_bits(1)).sqrt() * (1.0 + (n + 4.0) * f64::EPSILON)
 }
 
-/// |diag(a)·R·direction|² of components in twice the precision, each as `component` makes it of the sum and the bound on
-/// its error.
+/// The square |diag(a)·R·direction|², of components in twice the precision, each made by `component` of the sum and
+/// the bound on its error.
 fn square_of_reach(axes: &[f64], semi_axes: &[f64], direction: &[f64], component: impl Fn((f64, f64)) -> f64) -> f64 {
     let along = |axis: &[f64]| twofold::dot_with_error(axis.iter().copied().zip(direction.iter().copied()));
     let components = axes.chunks_exact(direction.len()).zip(semi_axes).map(|(axis, a)| a * component(along(axis)));

@@ -1,4 +1,4 @@
-//! What makes a set of points or half-spaces unfit for an ellipsoid.
+//! The errors of sets of points or half-spaces.
 
 use thiserror::Error;
 
@@ -13,18 +13,18 @@ pub enum EnclosingError {
     /// A coordinate is NaN or infinite.
     #[error("coordinate {coordinate} of point {index} is {value}")]
     NonFinite {
-        /// Which point.
+        /// The index of the point.
         index: usize,
-        /// Which of its coordinates.
+        /// The index of its coordinate.
         coordinate: usize,
-        /// What stands there.
+        /// The value.
         value: f64,
     },
     /// All points lie in an affine subspace of `rank` dimensions, up to rounding: the ellipsoid has no volume. Ask for
     /// [`FlatPolicy::AffineHull`](crate::FlatPolicy::AffineHull) to get the ellipsoid within that subspace.
     #[error("the points are flat: they span {rank} of {dimension} dimensions")]
     Flat {
-        /// The dimension of the affine hull of the points; 0 where all are equal.
+        /// The dimension of the affine hull of the points; 0 if all are equal.
         rank: usize,
         /// The dimension of the space.
         dimension: usize,
@@ -41,7 +41,7 @@ pub enum EnclosingError {
         /// The value given.
         value: f64,
     },
-    /// The points are sound, but the lengths or their inverse squares leave the range of `f64`.
+    /// The points are valid, but the lengths or their inverse squares leave the range of `f64`.
     #[error("the ellipsoid of these points is out of the range of f64")]
     OutOfRange,
 }
@@ -58,32 +58,31 @@ pub enum InscribedError {
     /// dimension).
     #[error("coordinate {coordinate} of half-space or point {index} is {value}")]
     NonFinite {
-        /// Which half-space or point.
+        /// The index of the half-space or point.
         index: usize,
-        /// Which coordinate; the dimension stands for the offset.
+        /// The index of the coordinate; the dimension stands for the offset.
         coordinate: usize,
-        /// What stands there.
+        /// The value.
         value: f64,
     },
     /// The normal of a half-space is zero.
     #[error("the normal of half-space {index} is zero")]
     ZeroNormal {
-        /// Which half-space.
+        /// The index of the half-space.
         index: usize,
     },
-    /// The normals do not positively span the space: the half-spaces have no bounded intersection, which is certain.
-    /// (It may be empty: that is not looked into.)
+    /// The normals do not positively span the space: the half-spaces certainly have no bounded intersection. (It may be
+    /// empty: this is not tested.)
     #[error("the intersection of the half-spaces is unbounded")]
     Unbounded,
-    /// Doubles do not tell whether, or how far away, the half-spaces close: there is a direction along which the
-    /// normals have hardly anything of their length. Axes in doubles are turned by 1e-16 of their length, so that no
-    /// body is told that is 1e16 times as long as thick, unless it lies along the coordinates.
+    /// Doubles do not tell whether, or how far away, the intersection of the half-spaces ends: along some direction the
+    /// normals have hardly anything of their length. Axes in doubles are turned by 1e-16 of their length, so that a
+    /// body 1e16 times as long as thick cannot be described, unless it lies along the coordinates.
     #[error(
         "the intersection of the half-spaces is unbounded, or so long that doubles do not tell (a ratio of {ratio:e})"
     )]
     NearlyUnbounded {
-        /// What the normals have along that direction, over what they have along others; 0 where it is nothing but
-        /// rounding.
+        /// The part of the normals along that direction, over that along others; 0 if it is nothing but rounding.
         ratio: f64,
     },
     /// The intersection has no interior: it is empty, or flat.
@@ -94,7 +93,7 @@ pub enum InscribedError {
     /// or 1e-154).
     #[error("the intersection of the half-spaces is empty, or too thin for doubles (a ratio of {ratio:e})")]
     NearlyEmpty {
-        /// How thin it is at least: the shortest over the longest axis of the last body known around it.
+        /// A bound on its thinness: the shortest over the longest axis of the last body known around it.
         ratio: f64,
     },
     /// All points lie in an affine subspace of `rank` dimensions, up to rounding: their hull has no interior.
@@ -117,7 +116,7 @@ pub enum InscribedError {
         /// The value given.
         value: f64,
     },
-    /// The input is sound, but lengths or their inverse squares leave the range of `f64`.
+    /// The input is valid, but lengths or their inverse squares leave the range of `f64`.
     #[error("the ellipsoid in this body is out of the range of f64")]
     OutOfRange,
 }

@@ -1,5 +1,5 @@
-//! The Löwner–John ellipsoids: the one of least volume around points, and the one of greatest volume inside a polytope.
-//! Each comes with a certified bound on how far its volume is from the optimum.
+//! The Löwner–John ellipsoids: the one of least volume around points, and the one of greatest volume inside a
+//! polytope. Each comes with a certified bound on how far its volume is from the optimum.
 //!
 #![doc = include_str!("../doc/pair.svg")]
 //!
@@ -37,13 +37,13 @@
 //! Points are anything that converts into `[f64; N]`: arrays, glam's `DVec2` and `DVec3`, or a type of your own. If the
 //! dimension is known only at run time, points are slices of one length: [`enclosing_dyn`], [`inscribed_dyn`].
 //!
-//! # What every answer says
-//! The gap is *certified*: it is computed from the duality of the problem, not from the size of the last step, and the
-//! rounding of its own evaluation is added. [`Status`] tells whether it is as small as was asked for. Whatever the
-//! status, the enclosing ellipsoid contains every point and the inscribed one stays within every half-space or hull.
-//! Both are proved of the doubles that are returned, and hold as evaluated in `f64`. All tolerances are relative:
-//! scaling the input by a power of two changes no bit of any mantissa but that of
-//! [`log_det`](Ellipsoid::log_det), as long as lengths are from 2⁻⁴⁵⁰ to 2⁴⁵⁰.
+//! # Promises of every answer
+//! The gap is *certified*: it is computed from the duality of the problem, not from the size of the last step, and
+//! the rounding of its own evaluation is added. [`Status`] tells whether it is as small as was asked for. Whatever
+//! the status, the enclosing ellipsoid contains every point and the inscribed one stays within every half-space or
+//! hull. Both are proved for the returned doubles, and hold as evaluated in `f64`. All tolerances are relative:
+//! scaling the input by a power of two changes no bit of any mantissa except that of [`log_det`](Ellipsoid::log_det),
+//! as long as lengths are from 2⁻⁴⁵⁰ to 2⁴⁵⁰.
 //!
 //! # Features
 //! None is on by default.
@@ -51,10 +51,10 @@
 //! - `rayon`: passes over many points use all cores. The answer is the same to the last bit.
 //! - `convex-support`: conversions to that crate's `Ellipsoid`.
 //! - `serde`: options, half-spaces and answers as data, in any format of [serde](https://docs.rs/serde), read back to
-//!   the last bit (`serde_json` needs its feature `float_roundtrip` for that). An option that is left out has its
-//!   default, and an unknown gap is `null`. What is read is checked: options have to be in range, and an ellipsoid
-//!   needs the right dimension, finite numbers, semi-axes in order and orthonormal axes. Errors can be written but not
-//!   read. What observers are shown is no data, nor is [`MovingPoints`], which can be built again from its points.
+//!   the last bit (`serde_json` needs its feature `float_roundtrip` for this). An option that is left out has its
+//!   default, and an unknown gap is `null`. Reading checks that options are in range, and that an ellipsoid has the
+//!   right dimension, finite numbers, semi-axes in order and orthonormal axes. Errors can be written but not read.
+//!   The iterates of observers cannot be written, nor can [`MovingPoints`], which can be built again from its points.
 //!
 //! ```
 //! # #[cfg(feature = "serde")] {

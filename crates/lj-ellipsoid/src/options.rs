@@ -1,4 +1,4 @@
-//! What the caller may choose, and how a solution says how far it got.
+//! The options of both problems, and how a computation ended.
 
 use crate::error::{EnclosingError, InscribedError};
 
@@ -40,10 +40,10 @@ pub enum EnclosingMethod {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FlatPolicy {
-    /// Answer [`EnclosingError::Flat`](crate::EnclosingError::Flat).
+    /// An error: [`EnclosingError::Flat`](crate::EnclosingError::Flat).
     #[default]
     Error,
-    /// Answer the ellipsoid within the affine hull: a disc, a segment or a point, with semi-axes of length 0 across it.
+    /// The ellipsoid within the affine hull: a disc, a segment or a point, with semi-axes of length 0 across it.
     AffineHull,
 }
 
@@ -59,14 +59,14 @@ pub struct EnclosingOptions {
     pub epsilon: f64,
     /// The algorithm. Default [`EnclosingMethod::Newton`].
     pub method: EnclosingMethod,
-    /// The most iterations of the algorithm. Default `None`, a number that suits the method: 2,000 Newton steps,
-    /// 1,000,000 moves of a weight, 200,000 cuts.
+    /// The most iterations of the algorithm. Default `None`, a number that suits the method: 2,000 Newton steps, one
+    /// million moves of a weight, 200,000 cuts.
     pub max_iterations: Option<usize>,
     /// What to do with points that span no volume. Default: an error.
     pub flat: FlatPolicy,
-    /// Points whose spread across some direction is at most this fraction of their extent count as flat. Whatever is
-    /// set, a spread within 32 units in the last place of the coordinates is flat: that much is rounding of the points.
-    /// Not negative. Default 0.
+    /// Points whose spread across some direction is at most this fraction of their extent count as flat. In any case, a
+    /// spread within 32 units in the last place of the coordinates is flat, since it is rounding of the points. Not
+    /// negative. Default 0.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::data::flat_tolerance"))]
     pub flat_tolerance: f64,
 }

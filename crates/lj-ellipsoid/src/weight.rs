@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Weight {
-    /// Which point or half-space.
+    /// The index of the point or half-space.
     pub index: usize,
     /// Its weight, positive; the weights sum to one up to rounding.
     pub weight: f64,

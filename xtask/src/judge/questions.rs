@@ -1,6 +1,7 @@
 //! What is asked of everybody: samples of the workloads, and the embedded suite, as queries of the query format.
 
 use std::fs;
+use std::path::Path;
 use std::sync::Arc;
 
 use crate::engine;
@@ -66,6 +67,20 @@ pub fn of_workloads(each: usize) -> Vec<Question> {
         overlaps(case, &pair, each, &mut questions);
     }
     questions
+}
+
+/// The questions of a file whose lines have ids.
+///
+/// # Errors
+/// What is wrong with the file, as a sentence.
+pub fn of_file(path: &Path) -> Result<Vec<Question>, String> {
+    let text = fs::read_to_string(path).map_err(|why| format!("cannot read {}: {why}", path.display()))?;
+    let read = |line: &str| {
+        let object = json::object(line.as_bytes()).map_err(|why| format!("{}: {}", path.display(), why.message))?;
+        let id = object.get("id").and_then(Value::as_str).ok_or_else(|| format!("a line has no id: {line}"))?;
+        Ok(Question { id: id.to_owned(), set: "file", case: String::new(), object, truth: None })
+    };
+    text.lines().filter(|line| !line.starts_with('#')).map(read).collect()
 }
 
 /// About `count` of the items, evenly spread.

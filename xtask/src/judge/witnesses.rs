@@ -10,7 +10,7 @@ use crate::validate::as_read;
 use crate::validate::score::scalar_of;
 use crate::wire::answer::Line;
 use crate::wire::fields::Object;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::fact::Bodies;
 use super::questions::Question;
@@ -56,6 +56,35 @@ impl Witness {
         // The way without end of a motion without end leaves no time open.
         let along = if way.is_finite() { self.of_motion * way } else { 0.0 };
         self.tolerance.max(self.rounding * bodies.reach).max(along)
+    }
+
+    /// Writes the answers as a file that [`from_file`] reads.
+    ///
+    /// # Errors
+    /// Why the file cannot be written, as a sentence.
+    pub fn write(&self, questions: &[Question], path: &Path) -> Result<(), String> {
+        let Self { name, tolerance, of_motion, settings, .. } = self;
+        let mut lines =
+            vec![json!({"peer": name, "tolerance": tolerance, "of_motion": of_motion, "settings": settings})];
+        for (Question { id, object, .. }, reply) in questions.iter().zip(&self.replies) {
+            let Reply::Answer { claim: Claim { flag, scalar }, ns } = *reply else {
+                if matches!(reply, Reply::NoAnswer) {
+                    lines.push(json!({"id": id, "error": "no answer"}));
+                }
+                continue;
+            };
+            let mut line = json!({"id": id, "ns": ns});
+            let query = object.get("query").and_then(Value::as_str).unwrap_or_default();
+            if let Some(flag) = flag {
+                line[if query.ends_with("cast") { "hit" } else { "overlap" }] = json!(flag);
+            }
+            if let (Some(name), Some(scalar)) = (scalar_of(query), scalar) {
+                line[name] = json!(scalar);
+            }
+            lines.push(line);
+        }
+        let text: String = lines.iter().map(|line| format!("{line}\n")).collect();
+        fs::write(path, text).map_err(|why| format!("cannot write {}: {why}", path.display()))
     }
 }
 

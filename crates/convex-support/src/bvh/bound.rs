@@ -1,4 +1,4 @@
-//! What a question says of a box: the least value that anything in it can have.
+//! Lower bounds of a question for boxes: the least value for anything in a box.
 
 use core::marker::PhantomData;
 
@@ -12,25 +12,26 @@ use crate::{Aabb, Scalar, Vector};
 
 /// A question to a tree of boxes: a lower bound on a quantity, such as a distance, for everything that lies in a box.
 ///
-/// The bound of an item's own box decides whether the item is [shown](super::Bvh::search). Which nodes are looked into
-/// is decided by [coarser](CoarseBound) bounds of their boxes, in single precision and for four boxes at once. An
-/// implementor must obey one law, whatever rounding does: *if the bound of a box is at most a limit, so is the coarse
-/// bound of every box around it.* Then what a search leaves out depends on the items' boxes alone, not on the tree.
+/// The bound of an item's own box decides whether the item is [visited](super::Bvh::search). [Coarser](CoarseBound)
+/// bounds of the nodes' boxes, in single precision and for four boxes at once, decide which nodes the search goes
+/// into. An implementor must obey one law, whatever the rounding: *if the bound of a box is at most a limit, so is
+/// the coarse bound of every box around it.* Then the items that a search leaves out depend on the items' boxes
+/// alone, not on the tree.
 pub trait Bound<V: Vector> {
-    /// The same question in single precision.
+    /// The bound in single precision.
     type Coarse: CoarseBound;
 
-    /// The bound of one box; infinity where nothing in it concerns the question.
+    /// The bound of one box; infinity if nothing in it concerns the question.
     fn bound(&self, around: &Aabb<V>) -> V::Scalar;
 
-    /// The same question to the boxes of a tree, which are seen in this frame.
+    /// The bound for the boxes of a tree, in this frame.
     fn coarse(&self, frame: &Frame<V>) -> Self::Coarse;
 }
 
-/// A question to four boxes in single precision.
+/// A bound for four boxes in single precision.
 pub trait CoarseBound {
     /// Numbers, none of them negative or NaN, in the order of the bounds of four boxes, in any unit and on any scale;
-    /// infinity where nothing in a box concerns the question. Those of places without a child do not matter.
+    /// infinity if nothing in a box concerns the question. The numbers of places without a child do not matter.
     fn bounds(&self, boxes: &Boxes) -> Vec4;
 
     /// The finite number of that kind that bounds of boxes do not exceed if they are at most `limit`.
@@ -42,14 +43,14 @@ fn rounding<S: Scalar>() -> S {
     S::from_f64(8.0) * S::EPSILON
 }
 
-/// When a box that moves along a ray meets another: λ ≥ 0, from below, for the box with the given half extents whose
-/// centre is at `source + λ·direction`. With half extents of zero this is a ray cast.
+/// The time λ ≥ 0, from below, at which a box that moves along a ray meets another box: the moving box has the given
+/// half extents and its centre is at `source + λ·direction`. With half extents of zero this is a ray cast.
 ///
 /// The moving box touches a box B where its centre is in B grown by the half extents, so that coordinate by coordinate
 ///
 /// > B.min − h ≤ s + λ·d ≤ B.max + h,
 ///
-/// an interval of λ each, and the answer is where they all have begun, if none has ended by then (the slab method).
+/// an interval of λ each. The answer is where all have begun, if none has ended by then (the slab method).
 ///
 /// Operations are rounded towards an earlier time, relatively; rounding of the coordinates themselves has to be in the
 /// boxes or the half extents (see [`outer_box`](super::outer_box)).
@@ -57,7 +58,7 @@ fn rounding<S: Scalar>() -> S {
 pub struct SweptBox<V: Vector> {
     /// What the smallest and the largest of a box are compared with: s + h and s − h.
     from: [V; 2],
-    /// 1/d, in the unit of d.
+    /// The reciprocal 1/d, in the unit of d.
     inverse: V,
     /// A power of two about as large as the largest coordinate of d.
     unit: V::Scalar,
@@ -164,7 +165,7 @@ impl<V: Vector> CoarseBound for CoarseSweptBox<V> {
     }
 }
 
-/// The distance from a box to a box, from below.
+/// A lower bound of the distance between two boxes.
 ///
 /// Coordinate by coordinate the gap is what one begins after the other ends, or 0; the distance is the length of the
 /// gaps.
@@ -188,7 +189,7 @@ impl<V: Vector> Bound<V> for BoxDistance<V> {
     #[inline(always)]
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
         let gaps = (around.min - self.of.max).max(self.of.min - around.max).max(V::ZERO);
-        // Whether boxes overlap nobody can foretell, and so it is no branch: only a gap whose square leaves the range
+        // Whether boxes overlap nobody can predict, and so it is no branch: only a gap whose square leaves the range
         // takes another way.
         let squared = gaps.length_squared();
         let is_plain = is_comfortable(squared) | (gaps.max_element() == V::Scalar::ZERO);

@@ -86,7 +86,7 @@ struct Task {
 }
 
 impl<V: Vector> Bvh<V> {
-    /// The tree of these boxes; box `i` is item `i`. Takes time proportional to n log n.
+    /// The tree of these boxes; box `i` is item `i`. It takes time proportional to n log n.
     ///
     /// # Panics
     /// If there are 2³⁰ boxes or more.
@@ -105,7 +105,7 @@ impl<V: Vector> Bvh<V> {
         tree
     }
 
-    /// Builds the tree anew over the boxes as they are.
+    /// Rebuilds the tree over the present boxes.
     pub fn rebuild(&mut self) {
         rebuild(self);
     }
@@ -286,7 +286,7 @@ impl Bins {
 }
 
 /// Brings the entries that `first` picks to the front, and returns their number. Every one is exchanged, which takes no
-/// branch: who is picked nobody can foretell.
+/// branch: who is picked nobody can predict.
 #[inline(always)]
 fn partition<T>(entries: &mut [T], first: impl Fn(&T) -> bool) -> usize {
     let mut picked = 0;

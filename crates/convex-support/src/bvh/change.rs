@@ -1,4 +1,4 @@
-//! Items that move, come and go.
+//! Items that are moved, added and removed.
 //!
 //! A new item goes down to the child whose box it enlarges least and takes the first free place, or shares an item's.
 //! That alone can grow a chain (items inserted in order do), so that the rule of scapegoat trees is added (Galperin and
@@ -19,14 +19,14 @@ use super::search::MAX_DEPTH;
 use crate::glam::Vec3A;
 use crate::{Aabb, Vector};
 
-/// How much worse a tree that is refitted may become before it is built anew.
+/// How much worse a refitted tree may become before it is rebuilt.
 const WORSE: f64 = 1.5;
 
 impl<V: Vector> Bvh<V> {
-    /// Gives every item the box that `box_of` says, in time proportional to their number. If the boxes have moved so
-    /// far that the tree has become half as costly again as when it was built, it is built anew.
+    /// Gives every item the box that `box_of` returns, in time proportional to their number. If the boxes have moved so
+    /// far that the tree has become half as costly again as when it was built, it is rebuilt.
     ///
-    /// Items are asked for in the order of their numbers.
+    /// `box_of` is called for the items in the order of their numbers.
     pub fn refit(&mut self, mut box_of: impl FnMut(usize) -> Aabb<V>) {
         for (item, around) in self.boxes.iter_mut().enumerate() {
             if self.slots[item] != Slot::NONE {
@@ -70,7 +70,7 @@ impl<V: Vector> Bvh<V> {
         }
     }
 
-    /// Takes an item in. One that is in the tree already gets this box.
+    /// Adds an item. An item that is in the tree already gets this box.
     ///
     /// # Panics
     /// If `item` is 2³⁰ or more.
@@ -112,7 +112,7 @@ impl<V: Vector> Bvh<V> {
         self.rebuild_if_beyond(&around);
     }
 
-    /// Takes an item out; whether it was there.
+    /// Removes an item; returns whether it was there.
     pub fn remove(&mut self, item: usize) -> bool {
         let slot = self.slots.get(item).copied().unwrap_or(Slot::NONE);
         if slot == Slot::NONE {

@@ -1,4 +1,4 @@
-//! A bounding volume hierarchy: which of many boxes a question concerns, without looking at each.
+//! A bounding volume hierarchy: finds the boxes that a question concerns, without testing each.
 
 mod bound;
 mod build;
@@ -29,10 +29,10 @@ pub use self::pairs::PairSearch;
 /// [`within`](Self::within) finds them in any order. [`pairs_within`](Self::pairs_within) and
 /// [`pairs_between`](Self::pairs_between) find pairs of boxes that are near each other.
 ///
-/// A node holds the boxes of its four children side by side, in single precision and in the coordinates of a [`Frame`],
-/// so that one pass of arithmetic bounds all four. A child is a node or an item. Which items a question is shown
-/// depends only on the items' own boxes. The depth stays below 36 whatever the boxes and their order, since a part that
-/// has become lopsided is built anew. So a question needs only a stack of fixed size, and allocates nothing.
+/// A node holds the boxes of its four children side by side, in single precision and in the coordinates of a
+/// [`Frame`], so that one pass of arithmetic bounds all four. A child is a node or an item. The items that a question
+/// visits depend only on the items' own boxes. The depth stays below 36 whatever the boxes and their order, since a
+/// part that has become lopsided is rebuilt. So a question needs only a stack of fixed size, and allocates nothing.
 ///
 /// Boxes must be finite, with `min ≤ max`. If a box is not, its own item may not be found, and others may be found more
 /// slowly; nothing panics.
@@ -55,15 +55,15 @@ pub use self::pairs::PairSearch;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Bvh<V: Vector> {
-    /// Node 0 is the root. Children come after their parents, so that one pass from the end meets them first.
+    /// Node 0 is the root. Children come after their parents, so that one pass from the end visits them first.
     nodes: Vec<Node>,
-    /// How nodes see the boxes.
+    /// The frame of the nodes.
     frame: Frame<V>,
     /// The box of each item.
     boxes: Vec<Aabb<V>>,
-    /// Where each item is.
+    /// The place of each item.
     slots: Vec<Slot>,
-    /// How many nodes are no longer part of the tree.
+    /// The number of nodes that are no longer part of the tree.
     dead: usize,
     /// The measure of how well the tree culls, when it was last built.
     built_cost: f64,
@@ -76,7 +76,7 @@ impl<V: Vector> Bvh<V> {
         self.nodes[0].count as usize
     }
 
-    /// Whether there is none.
+    /// Whether there are no items.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0

@@ -1,17 +1,17 @@
-//! The box of a shape as a tree needs it: with room for rounding.
+//! The box of a shape for a tree, with room for rounding.
 
 use num_traits::Float as _;
 
 use crate::bounds::core_box;
 use crate::{Aabb, Core, CoreKind, Scalar, ScalarOf, SupportMap, Vector};
 
-/// A box that contains the set that the shape stands for, and every point that a query computes of it: the
-/// [`bounding_box`](crate::bounding_box), grown by 32 ε of the numbers that the shape is computed from and by the
+/// A box that contains the exact set of a shape, and every point that a query computes of it: the
+/// [`bounding_box`](crate::bounding_box), grown by 32 ε of the numbers that define the shape and by the
 /// [error](Core::error) of its core. `None` if a number is not finite.
 ///
-/// The answer of a query is that of a shape which is off by rounding, a few ε of the origin, the core's extent and the
-/// radius. The box has room for that. So if the box of a body is farther away than some answer, the body is farther
-/// away also by its own query, not only in truth.
+/// The answer of a query is that of a shape with rounding errors, a few ε of the origin, the core's extent and the
+/// radius. The box has room for these errors. So if the box of a body is farther away than some answer, the body is
+/// farther away also by its own query, not only in truth.
 #[inline]
 #[must_use]
 pub fn outer_box<S: SupportMap + ?Sized>(shape: &S) -> Option<Aabb<S::Vector>> {

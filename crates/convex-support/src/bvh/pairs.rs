@@ -14,7 +14,7 @@ use crate::{Aabb, Scalar as _, Vector};
 /// Two nodes leave at most 16 pairs of children behind, and a node and an item 4, one of which is looked into next.
 const STACK: usize = (WIDTH * WIDTH + WIDTH) * MAX_DEPTH;
 
-/// The pairs of items whose boxes are within a distance; asked by [`visit`](Self::visit), in [pieces](Self::split) if
+/// The pairs of items whose boxes are within a distance; found by [`visit`](Self::visit), in [pieces](Self::split) if
 /// need be.
 #[derive(Clone, Copy, Debug)]
 pub struct PairSearch<'t, V: Vector> {
@@ -28,8 +28,8 @@ pub struct PairSearch<'t, V: Vector> {
     start: Pair,
 }
 
-/// How many pairs of items are found before their own boxes are looked at: one after the other and without a branch, so
-/// that those that are not in the caches are fetched together.
+/// How many pairs of items are found before their own boxes are tested: one after the other and without a branch, so
+/// that those outside the caches are fetched together.
 const BATCH: usize = 4 * WIDTH * WIDTH;
 
 /// A child of the first tree and one of the second.
@@ -67,8 +67,8 @@ impl<V: Vector> Bvh<V> {
 }
 
 impl<'t, V: Vector> PairSearch<'t, V> {
-    /// Shows every pair, in no particular order, until `visit` breaks off. Returns the number of pairs of nodes, or of
-    /// a node and an item, that were looked into.
+    /// Visits every pair, in no particular order, until `visit` breaks off. Returns the number of pairs of nodes, or of
+    /// a node and an item, that were tested.
     pub fn visit(self, mut visit: impl FnMut(usize, usize) -> ControlFlow<()>) -> usize {
         let mut looked = 0;
         let Some(distance) = finite(self.distance) else { return looked };
@@ -113,8 +113,8 @@ impl<'t, V: Vector> PairSearch<'t, V> {
         near.try_for_each(|((a, b), _)| visit(a.index(), b.index()))
     }
 
-    /// The same search in pieces, `at_least` so many if there are as many pairs, for as many threads. Which ones does
-    /// not depend on the number of threads.
+    /// The same search in pieces, `at_least` so many if there are as many pairs, for as many threads. The pieces do not
+    /// depend on the number of threads.
     #[must_use]
     pub fn split(self, at_least: usize) -> Vec<Self> {
         let mut pieces = VecDeque::from([self.start]);

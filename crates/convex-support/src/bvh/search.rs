@@ -21,16 +21,15 @@ const STACK: usize = (WIDTH - 1) * (MAX_DEPTH + 1) + 1;
 /// taken.
 const STACK_WITHIN: usize = 2 * (WIDTH - 1) * (MAX_DEPTH + 1) + 1;
 
-/// How many items are found before they are looked at.
+/// How many items are found before they are tested.
 const BATCH: usize = 32;
 
 impl<V: Vector> Bvh<V> {
     /// Calls `visit` for the items whose bound is at most `limit`, mostly the least bound first, and returns the number
-    /// of nodes that were looked into.
+    /// of nodes that were tested.
     ///
-    /// `visit` is given an item and its bound, and returns the limit from then on, or breaks off. If the bound of an
-    /// item is at most the limit that holds at the end, the item has been visited; other items may have been visited
-    /// too.
+    /// `visit` takes an item and its bound, and returns the limit from then on, or breaks off. If the bound of an item
+    /// is at most the final limit, the item has been visited; other items may have been visited too.
     pub fn search<B: Bound<V>>(
         &self,
         question: &B,
@@ -82,12 +81,12 @@ impl<V: Vector> Bvh<V> {
         }
     }
 
-    /// Shows the items whose bound is at most `limit`, in no particular order, until `visit` breaks off. Returns the
-    /// number of nodes that were looked into.
+    /// Visits the items whose bound is at most `limit`, in no particular order, until `visit` breaks off. Returns the
+    /// number of nodes that were tested.
     ///
-    /// Nodes do not wait for one another: which one is next is known before this one's children are, and it is fetched
-    /// meanwhile; and no branch depends on which children are near, or what they are. Each is put down as both a node
-    /// and an item, and counts as one.
+    /// Nodes do not wait for one another: the next node is known before this one's children are, and is fetched
+    /// meanwhile; and no branch depends on which children are near, or what they are. Each is stored as both a node and
+    /// an item, and counts as one.
     pub fn within<B: Bound<V>>(
         &self,
         question: &B,
@@ -124,12 +123,12 @@ impl<V: Vector> Bvh<V> {
         nodes
     }
 
-    /// Loads something of the children of a node that are nodes, before it is known which of them will be looked into.
-    /// In a tree that does not fit into the caches, a search would else spend much of its time waiting for the next
-    /// node.
+    /// Loads something of the children of a node that are nodes, before it is known which of them the search goes into.
+    /// Otherwise, in a tree that does not fit into the caches, a search would spend much of its time waiting for the
+    /// next node.
     ///
-    /// Nobody needs the values: `black_box` keeps the loads, one from either line of the cache. In place of a child
-    /// that is no node the last node is loaded, since a branch on what the child is would often be foretold wrongly.
+    /// The values are not used: `black_box` keeps the loads, one from either line of the cache. If a child is no node,
+    /// the last node is loaded instead, since a branch on the kind of the child would often be predicted wrongly.
     #[inline(always)]
     fn fetch(&self, node: &Node) {
         let last = self.nodes.len() - 1;
@@ -139,7 +138,7 @@ impl<V: Vector> Bvh<V> {
         }
     }
 
-    /// Shows those of some items whose own bound is at most `limit`.
+    /// Visits those of some items whose own bound is at most `limit`.
     #[inline(always)]
     fn show<B: Bound<V>>(
         &self,
@@ -175,7 +174,7 @@ fn coarse_limit<S: Scalar>(coarse: &impl CoarseBound, limit: S) -> f32 {
 /// The children with their bounds in descending order, of which those that the bits of `near` leave out come last; and
 /// the least of all, which is known before their order is.
 ///
-/// A network of five exchanges, none of which branches: which of two is the lesser nobody can foretell.
+/// A network of five exchanges, none of which branches: no processor can predict which of two is less.
 #[inline(always)]
 fn sorted(near: u32, children: [Link; WIDTH], bounds: [f32; WIDTH]) -> ([u64; WIDTH], u64) {
     let keys: [u64; WIDTH] = core::array::from_fn(|lane| children[lane].after(bounds[lane]));

@@ -12,12 +12,12 @@ use crate::{Core, SupportMap, Vector};
 
 /// The point of a shape nearest to `x`, or `x` itself if it is in the shape; `None` if the shape has no closed form.
 ///
-/// The nearest point `P(x)` is unique. It is characterised by `(x − P(x))·(y − P(x)) ≤ 0` for every `y` of the set: the
-/// vector from it to `x` is an outward normal. Van den Bergen's Algorithm 1, a ray cast that moves along the ray by the
-/// supporting planes at nearest points, needs nothing else of a shape.
+/// The nearest point `P(x)` is unique. It is characterised by `(x − P(x))·(y − P(x)) ≤ 0` for every `y` of the set:
+/// the vector from it to `x` is an outward normal. Van den Bergen's Algorithm 1, a ray cast that moves along the ray
+/// by the supporting planes at nearest points, needs nothing else of a shape.
 ///
-/// Points, segments, triangles, balls, boxes, capsules, cylinders and cones have closed forms, and for ellipsoids one
-/// equation in one unknown is solved by Newton's method to rounding. It also works through poses, uniform scalings,
+/// Points, segments, triangles, balls, boxes, capsules, cylinders and cones have closed forms. For ellipsoids
+/// Newton's method solves one equation in one unknown to rounding. It also works through poses, uniform scalings,
 /// roundings and sums with a point, and behind any pointer.
 ///
 /// ```

@@ -14,7 +14,7 @@ use crate::{
     Rounding, Scalar, SupportMap, Vector,
 };
 
-/// A shape under an affine map: scaled, sheared, mirrored, or flattened where the matrix is singular.
+/// A shape under an affine map: scaled, sheared, mirrored, or, if the matrix is singular, flattened.
 ///
 /// In symbols, the image of each point `x` is `M·x + t`.
 ///
@@ -35,15 +35,15 @@ pub struct Affine<S: SupportMap> {
     /// That power of two.
     unit: ScalarOf<S>,
     translation: S::Vector,
-    /// What the rounding of the origin `M·c + t` loses; it stays with the core.
+    /// The rounding error of the origin `M·c + t`, which stays with the core.
     lost: S::Vector,
-    /// The factor `s` where the matrix is `s` times a rotation or reflection: a ball then stays a ball.
+    /// The factor `s` if the matrix is `s` times a rotation or reflection: a ball then stays a ball.
     scale: Option<ScalarOf<S>>,
     /// The radius of the ball that does not stay one, and becomes part of the core.
     swept: ScalarOf<S>,
-    /// The inverse of the matrix; `None` where it is singular.
+    /// The inverse of the matrix; `None` if it is singular.
     inverse: Option<<S::Vector as Vector>::Matrix>,
-    /// What the support points of the core are wrong by at most, as a length.
+    /// A bound on the error of the core's support points, as a length.
     error: ScalarOf<S>,
 }
 

@@ -5,12 +5,12 @@ use super::reflected::Reflected;
 use crate::forward::{forward, forward_line_crossing};
 use crate::{CrossedByLine, SupportMap};
 
-/// All differences of a point of one shape and a point of another: their configuration space obstacle (CSO).
+/// The set of all differences of a point of one shape and a point of another: their configuration space obstacle
+/// (CSO).
 ///
-/// In symbols, it is `A − B = { a − b : a ∈ A, b ∈ B }`.
-/// Two shapes meet exactly where their difference contains zero; their distance is its distance from zero; and the
-/// translations of `B` that make it touch `A` are the boundary of the difference. So one moving shape against another
-/// becomes one ray against their difference.
+/// In symbols, it is `A − B = { a − b : a ∈ A, b ∈ B }`. Two shapes meet exactly if their difference contains zero;
+/// their distance is its distance from zero; and the translations of `B` that make it touch `A` are the boundary of
+/// the difference. So one moving shape against another becomes one ray against their difference.
 ///
 /// ```
 /// use convex_support::{Ball, Cuboid, Difference, glam::DVec3, support_value};

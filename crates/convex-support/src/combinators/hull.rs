@@ -9,7 +9,7 @@ use crate::{Core, CoreKind, Hint, Rounding, Scalar, SupportMap, Vector};
 
 /// The convex hull of the union of two shapes. Nest it for more than two.
 ///
-/// Where both are swept by a ball, so is the hull, by the smaller ball: the hull of two balls of one radius has a
+/// If both are swept by a ball, so is the hull, by the smaller ball: the hull of two balls of one radius has a
 /// segment for its core.
 ///
 /// ```

@@ -24,7 +24,7 @@ use crate::{
 pub struct MinkowskiSum<A: SupportMap, B> {
     a: A,
     b: B,
-    /// What the rounding of the sum of the origins loses; it stays with the core.
+    /// The rounding error of the sum of the origins, which stays with the core.
     lost: A::Vector,
 }
 

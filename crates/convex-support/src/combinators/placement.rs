@@ -157,6 +157,7 @@ impl<V: Vector> Placement<'_, V> {
     ///   of the farthest by that times twice the extent: `|d|·(6u·|matrix|·extent)`;
     /// - the error of the matrix itself moves the core and its origin;
     /// - what was lost is known to `u` of itself and to `16ε²` of the numbers that it was computed from.
+    #[inline(never)]
     pub(super) fn image(&self, shape: Rounding<V>, origin: V, length: V::Scalar) -> Rounding<V> {
         let (zero, m) = (V::Scalar::ZERO, self.matrix);
         let Exact { rows, columns } = Exact::of(m);

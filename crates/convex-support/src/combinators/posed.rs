@@ -32,15 +32,15 @@ use crate::{
 // waits.
 #[repr(C)]
 pub struct Posed<S: SupportMap> {
-    /// What the support points of the core are wrong by at most, as a length.
+    /// A bound on the error of the core's support points, as a length.
     error: ScalarOf<S>,
-    /// A further bound: how far points are from where they would be if the transpose of the rotation were exactly its
+    /// A bound on the distance of points from where they would be if the transpose of the rotation were exactly its
     /// inverse.
     skew: ScalarOf<S>,
-    /// What every entry of the rotation is wrong by at most, but for rows along a coordinate axis, in units of epsilon.
+    /// A bound on the error of every entry of the rotation, except rows along a coordinate axis, in units of epsilon.
     rotation_error: ScalarOf<S>,
     shape: S,
-    /// What the origin `R·c + t` loses by its rounding. Far from the world's origin that is much of the shape's size,
+    /// The rounding error of the origin `R·c + t`. Far from the world's origin it is a large part of the shape's size,
     /// and it stays with the core.
     lost: S::Vector,
     translation: S::Vector,
@@ -58,7 +58,7 @@ impl<S: SupportMap + fmt::Debug> fmt::Debug for Posed<S> {
     }
 }
 
-/// What a rotation matrix is wrong by at most, in units of epsilon: every entry, and where it takes a unit vector.
+/// Bounds on the error of a rotation matrix, in units of epsilon: of every entry, and of the image of a unit vector.
 struct Errors {
     entry: f64,
     operator: f64,
@@ -101,12 +101,12 @@ impl<S: SupportMap> Posed<S> {
         Self::at(shape, rotation, Errors { entry, operator }, translation)
     }
 
-    /// The shape moved by a rotation matrix, then by `translation`: for poses that come as glam's `DAffine3` or as a
-    /// matrix. A matrix that has drifted from orthonormality is taken to the nearest rotation.
+    /// The shape moved by a rotation matrix, then by `translation`: for poses given as glam's `DAffine3` or as a
+    /// matrix. A matrix that has drifted from orthonormality is replaced by the nearest rotation.
     ///
     /// # Errors
-    /// [`InvalidShape`] if a number is not finite, the columns are not orthonormal even to half of their digits, or
-    /// the matrix mirrors.
+    /// [`InvalidShape`] if a number is not finite, the columns are not orthonormal to half of their digits, or the
+    /// matrix mirrors.
     pub fn from_matrix(
         shape: S,
         rotation: <S::Vector as Vector>::Matrix,
@@ -183,9 +183,9 @@ impl<S: SupportMap> Posed<S> {
     }
 }
 
-/// What an entry of a [`polished`] matrix is away from the nearest rotation at most, in units of epsilon. With `RᵀR =
-/// 1 + E`, the step leaves `3/8·|E|²`, where the entries of `E` are at most `√ε`: 3.4; and its own operations leave as
-/// much again.
+/// The largest distance of an entry of a [`polished`] matrix from the nearest rotation, in units of epsilon. With
+/// `RᵀR = 1 + E`, the step leaves `3/8·|E|²`, where the entries of `E` are at most `√ε`: 3.4; and its own operations
+/// leave as much again.
 const POLISHED: Errors = Errors { entry: 8.0, operator: 14.0 };
 
 /// The nearest rotation to a matrix that is one to half its digits, by one step of Newton's method for the orthogonal

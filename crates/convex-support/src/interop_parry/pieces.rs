@@ -8,20 +8,20 @@ use parry::shape::{Shape, ShapeType, TypedShape};
 /// A convex shape of any kind, shared as parry's `SharedShape` is.
 pub type SharedConvex = Arc<dyn SupportMap<Vector = V> + Send + Sync>;
 
-/// A convex piece of one of parry's shapes, and where it is in that shape's frame.
+/// A convex piece of one of parry's shapes, and its pose in the shape's frame.
 #[derive(Clone)]
 pub struct Piece {
     /// The piece in its own frame.
     pub shape: SharedConvex,
-    /// From the frame of the piece to that of the whole.
+    /// The pose of the piece in the frame of the whole.
     pub pose: Pose,
 }
 
 impl Piece {
-    /// The piece where it is when the whole is in this pose.
+    /// The piece in place, given the pose of the whole.
     ///
     /// # Errors
-    /// [`InvalidShape`] as of [`posed`].
+    /// Those of [`posed`].
     pub fn at(&self, whole: &Pose) -> Result<Posed<SharedConvex>, InvalidShape> {
         posed(self.shape.clone(), &(*whole * self.pose))
     }
@@ -41,16 +41,16 @@ pub enum Unconvertible {
     Kind {
         /// The index of the piece; 0 for a shape that has no pieces.
         piece: usize,
-        /// What it is.
+        /// Its kind.
         kind: ShapeType,
     },
-    /// A number of a piece is none that the shape can have here.
+    /// The shape cannot have a number of a piece here.
     Number {
         /// The index of the piece; 0 for a shape that has no pieces.
         piece: usize,
-        /// What it is.
+        /// Its kind.
         kind: ShapeType,
-        /// Which number, and why.
+        /// The error of the constructor, with the number.
         why: InvalidShape,
     },
 }
@@ -75,14 +75,15 @@ impl core::error::Error for Unconvertible {
     }
 }
 
-/// The convex pieces of a shape of parry's of any kind: the shapes of a `Compound`, the triangles of a `TriMesh`, the
-/// segments of a `Polyline`, in parry's order; of a convex shape, itself. A scene of them is asked about the whole.
+/// The convex pieces of a parry shape of any kind, in parry's order: the shapes of a `Compound`, the triangles of a
+/// `TriMesh`, the segments of a `Polyline`; a convex shape is one piece. A scene of the pieces answers questions
+/// about the whole.
 ///
-/// A height field can be had as a mesh, by parry's `to_trimesh` in 3D and `to_polyline` in the plane. A half-space is
+/// parry's `to_trimesh` in 3D and `to_polyline` in the plane make a mesh of a height field. A half-space is
 /// unbounded: it is a body of a scene by itself. For a large mesh, [`triangles`] takes less memory.
 ///
 /// # Errors
-/// [`Unconvertible`] for the first piece that is no shape here.
+/// [`Unconvertible`] for the first piece that has no counterpart here.
 pub fn pieces(shape: &dyn Shape) -> Result<Vec<Piece>, Unconvertible> {
     let here = |shape| Piece { shape, pose: Pose::IDENTITY };
     match shape.as_typed_shape() {
@@ -102,13 +103,13 @@ pub fn pieces(shape: &dyn Shape) -> Result<Vec<Piece>, Unconvertible> {
     }
 }
 
-/// The triangles of a mesh in its frame, in parry's order and with parry's orientation, whatever the mesh was scaled by
+/// The triangles of a mesh in its frame, in parry's order and with parry's orientation, even if the mesh was scaled
 /// or reversed: the bodies of a scene that knows the fronts of its triangles.
 ///
 /// In 3D they are a surface: the space that it encloses is not part of them.
 ///
 /// # Errors
-/// [`Unconvertible::Number`] for the first triangle of which a coordinate is not finite.
+/// [`Unconvertible::Number`] for the first triangle with a coordinate that is not finite.
 pub fn triangles(mesh: &theirs::TriMesh) -> Result<Vec<Triangle<V>>, Unconvertible> {
     let triangle = |(piece, triangle)| {
         Triangle::try_from(triangle).map_err(|why| Unconvertible::Number { piece, kind: ShapeType::Triangle, why })

@@ -6,10 +6,10 @@ use parry::shape as theirs;
 
 use crate::{Ball, Cuboid, Feature, InvalidShape, Rounded, Segment, SupportMap, Triangle};
 
-/// A shape of parry's, in its own frame, as a shape of this crate: anything that has parry's support mapping.
+/// A parry shape, in its own frame, as a shape of this crate: anything that has parry's support mapping.
 ///
-/// It is asked through parry's interface, and so has neither a radius nor a hint, and of a face it shows those vertices
-/// that are support points of directions nearby. Where the kind of shape is known, the conversions
+/// It is used through parry's interface, and so has neither a radius nor a hint, and of a face it shows those
+/// vertices that are support points of directions nearby. If the kind of shape is known, the conversions
 /// (`Ball::try_from(parry_ball)` …) make better shapes of it.
 #[derive(Clone, Copy, Debug)]
 pub struct FromParry<S>(
@@ -31,7 +31,7 @@ impl<S: theirs::SupportMap> SupportMap for FromParry<S> {
     }
 }
 
-/// A shape of this crate as a shape of parry's, for its queries on support maps.
+/// A shape of this crate as a parry shape, for parry's queries on support maps.
 #[derive(Clone, Copy, Debug)]
 pub struct IntoParry<S>(
     /// The shape.

@@ -1,4 +1,4 @@
-//! Bounds on where a line enters a shape that are certain, from its closed form.
+//! Certain bounds on where a line enters a shape, from its closed form.
 //!
 //! A closed form computes the crossing of a slightly wrong line. Near the shape, that line is nowhere farther from the
 //! true one than an error `e`: a few roundings of the size and of the distance of the line's source, which is no more
@@ -16,7 +16,7 @@ use crate::numerics::twofold::{foot_from, lost_in_sum, two_sum};
 use crate::shapes::across;
 use crate::{Cone, Matrix, Scalar, Vector, Vector3};
 
-/// A line, of which a shape is asked where it [certainly enters](crate::SupportMap::certain_crossing).
+/// A line, for the [certain crossing](crate::SupportMap::certain_crossing) of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineQuery<V: Vector> {
     /// A point of the line.
@@ -25,22 +25,22 @@ pub struct LineQuery<V: Vector> {
     pub direction: V,
     /// The radius of a further ball that the shape is swept by.
     pub radius: V::Scalar,
-    /// The answer is to hold for every line that passes within this distance of the line near the shape.
+    /// The answer must hold for every line that passes within this distance of the line near the shape.
     pub error: V::Scalar,
-    /// Whether to compute in twice the precision: for the few lines of which the closed form in plain numbers is
+    /// Whether to compute in twice the precision: for the few lines for which the closed form in plain numbers is
     /// certain of nothing.
     pub is_close: bool,
 }
 
 impl<V: Vector> LineQuery<V> {
-    /// A line without error, asked of a shape as it is, in plain numbers.
+    /// A line without error, for a shape without a further ball, in plain numbers.
     #[inline(always)]
     #[must_use]
     pub fn new(source: V, direction: V) -> Self {
         Self { source, direction, radius: V::Scalar::ZERO, error: V::Scalar::ZERO, is_close: false }
     }
 
-    /// The line as it is seen from a point that is the sum of two.
+    /// The line relative to a point that is the sum of two.
     #[inline(always)]
     #[must_use]
     pub fn seen_from(self, [origin, at]: [V; 2]) -> Self {
@@ -50,14 +50,14 @@ impl<V: Vector> LineQuery<V> {
         Self { source: self.source - point, ..self.within(lost) }
     }
 
-    /// The line known a further `error` less exactly.
+    /// The line with a further `error`.
     #[inline(always)]
     #[must_use]
     pub fn within(self, error: V::Scalar) -> Self {
         Self { error: self.error + error, ..self }
     }
 
-    /// The same of a shape that is swept by a further ball.
+    /// The line for the shape swept by a further ball.
     #[inline(always)]
     #[must_use]
     pub fn sweeping(self, radius: V::Scalar) -> Self {
@@ -288,8 +288,8 @@ impl<V: Vector> NearLine<V> {
     /// `m²|Ad|² > 625·e²k²`, and `e²k²` less than `eg/5` if `e·k²` is less than a fifth of the least reciprocal; both,
     /// and that the slack is less than `m/8`, follow from `m²|Ad|² > 128·e·k`.
     ///
-    /// A line passes at more than `e` if `|w|(|w| − 1) > eg` for its nearest point; the left side is at least `(|w|² −
-    /// 1)/2`, and `g` is at most `k|w| ≤ k(1 + |w|²)/2`.
+    /// A line passes at more than `e` if `|w|(|w| − 1) > eg` for its nearest point; the left side is at least
+    /// `(|w|² − 1)/2`, and `g` is at most `k|w| ≤ k(1 + |w|²)/2`.
     #[inline(always)]
     pub(crate) fn ellipsoid(&self, axes: &V::Matrix, inverse_semi_axes: V) -> Option<CertainCrossing<V>> {
         let number = V::Scalar::from_f64;
@@ -564,9 +564,9 @@ impl<V: Vector> Chord<V> {
     /// to `error`; `None` if the line may miss the ball, or if the squared half of the chord is less than `least·er`.
     /// `recip` is `1/|direction|²`.
     ///
-    /// With the half `m`, `F = |x|² − r²` is `|d|²·σ·(σ ∓ 2m)` at `σ` within or before an end. With `σ =
-    /// 1.25·e·r/(m|d|²)`, which is less than `m/8` if `m²|d|² > 10er`, `F` is less than `−2.3er` at the one and more
-    /// than `2.5er` at the other: one point is deeper than `e`, and the other farther out.
+    /// With the half `m`, `F = |x|² − r²` is `|d|²·σ·(σ ∓ 2m)` at `σ` within or before an end. With
+    /// `σ = 1.25·e·r/(m|d|²)`, which is less than `m/8` if `m²|d|² > 10er`, `F` is less than `−2.3er` at the one and
+    /// more than `2.5er` at the other: one point is deeper than `e`, and the other farther out.
     #[inline(always)]
     fn slack(&self, radius: V::Scalar, error: V::Scalar, recip: V::Scalar, least: V::Scalar) -> Option<V::Scalar> {
         let to_end = radius * recip / self.half;

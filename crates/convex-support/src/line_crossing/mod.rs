@@ -1,8 +1,8 @@
 //! The stretch of a line within a set, in closed form.
 //!
-//! These functions are short, and most rays want no normal and many no exit: they are inlined always, so that what a
-//! caller does not look at is not computed. Half of the rays miss, and a branch that cannot be foretold takes longer
-//! than the arithmetic it skips: so a miss is a `NaN` or an entry behind the exit, and is told from a hit at the end.
+//! These functions are short, and most rays want no normal and many no exit: they are inlined always, so that unused
+//! results are not computed. Half of the rays miss, and a branch that cannot be predicted takes longer than the
+//! arithmetic it skips: so a miss is a `NaN` or an entry behind the exit, and is told from a hit at the end.
 
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons are written so that NaN is a miss")]
 
@@ -59,7 +59,7 @@ pub struct Crossing<V: Vector> {
 }
 
 impl<V: Vector> Crossing<V> {
-    /// The first `λ` in `[0, max_lambda]` that is in the interval: 0 for a source inside, `None` where the ray misses.
+    /// The first `λ` in `[0, max_lambda]` that is in the interval: 0 for a source inside, `None` if the ray misses.
     ///
     /// ```
     /// use convex_support::{Ball, glam::DVec2, line_crossing};
@@ -76,7 +76,7 @@ impl<V: Vector> Crossing<V> {
     #[inline]
     #[must_use]
     pub fn first_hit(&self, max_lambda: V::Scalar) -> Option<V::Scalar> {
-        // Not `&&` and `max`: half of the rays miss, and a branch that cannot be foretold takes longer than all of
+        // Not `&&` and `max`: half of the rays miss, and a branch that cannot be predicted takes longer than all of
         // this.
         let first = if self.entry > V::Scalar::ZERO { self.entry } else { V::Scalar::ZERO };
         ((self.exit >= V::Scalar::ZERO) & (self.entry <= max_lambda)).then_some(first)
@@ -94,7 +94,7 @@ impl<V: Vector> Crossing<V> {
     }
 }
 
-/// What is known of the crossing of a convex set by a line.
+/// The crossing of a convex set by a line, as far as it is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -114,7 +114,7 @@ pub enum LineCrossing<V: Vector> {
 }
 
 impl<V: Vector> LineCrossing<V> {
-    /// The stretch of the line that is in the set; `None` where it misses or is unknown.
+    /// The stretch of the line that is in the set; `None` if it misses or is unknown.
     #[inline]
     #[must_use]
     pub fn crossing(self) -> Option<Crossing<V>> {
@@ -124,7 +124,7 @@ impl<V: Vector> LineCrossing<V> {
         }
     }
 
-    /// The same with its normal, or the vector along which the line is apart, mapped.
+    /// The answer with its normal, or the vector across which the line misses, mapped.
     #[inline(always)]
     pub(crate) fn with_normal(self, normal: impl FnOnce(V) -> V) -> Self {
         match self {
@@ -135,7 +135,7 @@ impl<V: Vector> LineCrossing<V> {
     }
 }
 
-/// What a closed form tells: the crossing, or the vector of [`LineCrossing::Misses`].
+/// The result of a closed form: the crossing, or the vector of [`LineCrossing::Misses`].
 type Crossed<V> = Result<Crossing<V>, V>;
 
 impl<V: Vector> From<Crossed<V>> for LineCrossing<V> {
@@ -145,15 +145,15 @@ impl<V: Vector> From<Crossed<V>> for LineCrossing<V> {
     }
 }
 
-/// A convex set of which it is known in closed form where a line is in it, as [`line_crossing`] asks.
+/// A convex set with a closed form for where a line is in it, for [`line_crossing`].
 #[diagnostic::on_unimplemented(
     message = "where a line crosses `{Self}` has no closed form",
     note = "`gjk_raycast::ray_cast` answers of every shape where a ray enters it, and `ray_exit` where it leaves"
 )]
 pub trait CrossedByLine: SupportMap {
     /// Where the line through `source` along `direction` is in the core swept by a ball of the given `radius`, in
-    /// closed form; `source` is relative to the [origin](Core::origin) of the core. [`LineCrossing::Unknown`] where
-    /// this core and this radius have none.
+    /// closed form; `source` is relative to the [origin](Core::origin) of the core. [`LineCrossing::Unknown`] if this
+    /// core and this radius have no closed form.
     fn core_line_crossing(
         &self,
         source: Self::Vector,
@@ -161,9 +161,9 @@ pub trait CrossedByLine: SupportMap {
         radius: ScalarOf<Self>,
     ) -> LineCrossing<Self::Vector>;
 
-    /// What [`certain_crossing`](SupportMap::certain_crossing) tells in plain numbers of many lines, to the last bit;
-    /// of those that it knows nothing of, or that cost a branch, nothing. `false`, as the provided method returns, if
-    /// nothing is ever known.
+    /// The answers of [`certain_crossing`](SupportMap::certain_crossing) in plain numbers for many lines, to the last
+    /// bit. Lines without a certain answer, or whose answer costs a branch, are left out. `false`, as the provided
+    /// method returns, if nothing is ever known.
     #[doc(hidden)]
     #[inline]
     fn certain_crossings(&self, lines: &mut Lines<ScalarOf<Self>>) -> bool {
@@ -174,10 +174,11 @@ pub trait CrossedByLine: SupportMap {
 
 /// Where the line through `source` along `direction` is in a shape.
 ///
-/// This is for ray tracers, and it is an independent reference for ray casts that only use the support mapping. Points,
-/// segments, triangles, balls, boxes, capsules, cylinders, cones and ellipsoids have closed forms, and so have the
-/// first six of these swept by a ball. It also works through poses, invertible affine maps, roundings and sums with a
-/// point, and behind any pointer. Where such a combination has none the answer is [`LineCrossing::Unknown`].
+/// This is for ray tracers, and it is an independent reference for ray casts that only use the support mapping.
+/// Points, segments, triangles, balls, boxes, capsules, cylinders, cones and ellipsoids have closed forms, and so
+/// have the first six of these swept by a ball. It also works through poses, invertible affine maps, roundings and
+/// sums with a point, and behind any pointer. If such a combination has no closed form, the answer is
+/// [`LineCrossing::Unknown`].
 ///
 /// ```
 /// use convex_support::{Cone, Cuboid, LineCrossing, Posed, Rounded, glam::DVec3, line_crossing};
@@ -196,12 +197,13 @@ pub trait CrossedByLine: SupportMap {
 /// ```
 ///
 /// # Accuracy
-/// Every method starts from the point of the line nearest the shape's centre, so that coordinates there are of the size
-/// of the shape and nothing cancels but what the source's own coordinates have already lost: `λ·|direction|` carries an
-/// error of a few units in the last place of the distance between source and centre. Where a line grazes a curved
-/// surface, at an angle `α`, this is magnified by `1/sin α`; whether a line hits that passes the boundary within that
-/// error is decided by rounding. Squares of lengths must stay in range (about 1e±150 in `f64`, 1e±18 in `f32`);
-/// directions may have any length. A zero direction has no line and a `NaN` no crossing: a miss.
+/// Every method starts from the point of the line nearest the shape's centre, so that coordinates there are of the
+/// size of the shape and nothing cancels except the digits that the source's own coordinates have already lost:
+/// `λ·|direction|` carries an error of a few units in the last place of the distance between source and centre. Where
+/// a line grazes a curved surface, at an angle `α`, this is magnified by `1/sin α`. If a line passes the boundary
+/// within this error, rounding decides whether it hits. Squares of lengths must stay in range (about 1e±150 in
+/// `f64`, 1e±18 in `f32`); directions may have any length. A zero direction has no line and a `NaN` no crossing: a
+/// miss.
 #[inline(always)]
 pub fn line_crossing<S: CrossedByLine + ?Sized>(
     shape: &S,

@@ -11,8 +11,8 @@ use crate::{
 };
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
-/// segment. [`Posed`](crate::Posed) puts it elsewhere. A capsule between two given points can also be had as
-/// `Rounded::new(Segment::new([a, b])?, radius)`, which is as quick.
+/// segment. [`Posed`](crate::Posed) puts it elsewhere. `Rounded::new(Segment::new([a, b])?, radius)` is a capsule
+/// between two given points, and as fast.
 ///
 /// ```
 /// use convex_support::{Capsule, glam::DVec2, support_value};

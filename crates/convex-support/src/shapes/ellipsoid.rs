@@ -17,8 +17,8 @@ use crate::{
 /// The ellipsoid `{ c + R·diag(a)·u : |u| ≤ 1 }`; an ellipse in 2D.
 ///
 /// It is kept as centre `c`, orthonormal axes (the columns of `R`) and semi-axes `a`. The matrix form
-/// `{ x : (x − c)ᵀX(x − c) ≤ 1 }` has `X = R·diag(a)⁻²·Rᵀ`, whose condition is the square of the aspect ratio: forming
-/// it loses all accuracy of the longest axis at an aspect of 1e8 in `f64`. Where the axes are known, give the axes.
+/// `{ x : (x − c)ᵀX(x − c) ≤ 1 }` has `X = R·diag(a)⁻²·Rᵀ`, whose condition is the square of the aspect ratio:
+/// forming it loses all accuracy of the longest axis at an aspect of 1e8 in `f64`. So give the axes if you know them.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::{DMat2, DVec2}, support_value};
@@ -36,12 +36,12 @@ pub struct Ellipsoid<V: Vector> {
     axes: V::Matrix,
     semi_axes: V,
     inverse_semi_axes: V,
-    /// What every entry of the axes is wrong by at most, but for columns along a coordinate axis, in units of epsilon.
+    /// A bound on the error of every entry of the axes, except columns along a coordinate axis, in units of epsilon.
     axes_error: V::Scalar,
-    /// What the support points are wrong by at most, as a length.
+    /// A bound on the error of the support points, as a length.
     error: V::Scalar,
-    /// How far the points are at most from where they would be if the transpose of the axes were their inverse, and
-    /// these were exact.
+    /// A bound on the distance of the points from where they would be if the transpose of the axes were their inverse,
+    /// and these were exact.
     skew: V::Scalar,
     /// The radius of a ball that rolls around within.
     rolling_radius: V::Scalar,
@@ -67,8 +67,8 @@ impl<V: Vector> Ellipsoid<V> {
     /// The ellipsoid about `center` whose semi-axis `i` lies along column `i` of `axes`, which must be orthonormal.
     ///
     /// # Errors
-    /// [`InvalidShape`] if a number is not finite, a semi-axis is not positive, or the axes are not orthonormal, not
-    /// even to half of their digits.
+    /// [`InvalidShape`] if a number is not finite, a semi-axis is not positive, or the axes are not orthonormal to half
+    /// of their digits.
     pub fn from_axes(center: V, semi_axes: V, axes: V::Matrix) -> Result<Self, InvalidShape> {
         let center = finite("center", center)?;
         let semi_axes = finite("semi_axes", semi_axes)?;
@@ -96,8 +96,8 @@ impl<V: Vector> Ellipsoid<V> {
     /// The ellipsoid `{ x : (x − center)ᵀ·matrix·(x − center) ≤ 1 }`.
     ///
     /// The axes and semi-axes are found from a pivoted Cholesky factor by one-sided Jacobi rotations in `f64`: each
-    /// semi-axis is as accurate, relative to itself, as the matrix determines it. From then on the ellipsoid is the one
-    /// that these describe.
+    /// semi-axis is as accurate, relative to itself, as the matrix determines it. From then on the axes and semi-axes
+    /// define the ellipsoid.
     ///
     /// # Errors
     /// [`InvalidShape`] if a number is not finite, or the matrix is not symmetric or not positive definite to rounding.
@@ -134,8 +134,8 @@ impl<V: Vector> Ellipsoid<V> {
         self.axes
     }
 
-    /// The matrix `X = R·diag(a)⁻²·Rᵀ` of the form `(x − c)ᵀX(x − c) ≤ 1`; entries may overflow where a semi-axis is
-    /// below the square root of the smallest number.
+    /// The matrix `X = R·diag(a)⁻²·Rᵀ` of the form `(x − c)ᵀX(x − c) ≤ 1`; entries may overflow if a semi-axis is below
+    /// the square root of the smallest number.
     #[must_use]
     pub fn matrix(&self) -> V::Matrix {
         self.sum_of_squares(|a| (a * a).recip())

@@ -48,9 +48,9 @@ pub trait Vector:
     type Scalar: Scalar;
     /// The square matrices that act on these vectors: `Mat2`, `Mat3`, `Mat3A`, `DMat2` or `DMat3`.
     type Matrix: Matrix<Vector = Self>;
-    /// How glam says *rotation* in this space: an angle in radians in 2D, a quaternion in 3D.
+    /// The type of a rotation in this space: an angle in radians in 2D, a quaternion in 3D.
     type Rotation: Rotation<Self>;
-    /// How fast a body turns in this space: a number in 2D, a vector in 3D.
+    /// The type of an angular velocity in this space: a number in 2D, a vector in 3D.
     type AngularVelocity: AngularVelocity<Self>;
 
     /// The same vectors as plain numbers, of which compilers make vector instructions for several at a time: `Vec3` for
@@ -78,7 +78,7 @@ pub trait Vector:
     fn dot(self, rhs: Self) -> Self::Scalar;
     /// The squared Euclidean length.
     fn length_squared(self) -> Self::Scalar;
-    /// The Euclidean length; see [`norm`](Self::norm) where squares could over- or underflow.
+    /// The Euclidean length; see [`norm`](Self::norm) if squares could over- or underflow.
     fn length(self) -> Self::Scalar;
     /// Absolute values, coordinate by coordinate.
     fn abs(self) -> Self;
@@ -122,8 +122,8 @@ pub trait Vector:
         }
     }
 
-    /// The unit vector along `self` for vectors of any magnitude; `None` for the zero vector and where a coordinate
-    /// is not finite.
+    /// The unit vector along `self` for vectors of any magnitude; `None` for the zero vector and if a coordinate is not
+    /// finite.
     ///
     /// ```
     /// use convex_support::{Vector, glam::DVec2};
@@ -143,7 +143,7 @@ pub trait Vector:
     }
 }
 
-/// A vector of 3D space, where there is a cross product: `Vec3`, `Vec3A` or `DVec3`.
+/// A vector of 3D space, which has a cross product: `Vec3`, `Vec3A` or `DVec3`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a vector of 3D space",
     note = "cylinders, cones and cross products need glam's `Vec3`, `Vec3A` or `DVec3`"

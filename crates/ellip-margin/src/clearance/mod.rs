@@ -20,14 +20,14 @@ use self::seen::Seen;
 use crate::hierarchy::{Aabb, Hierarchy};
 use crate::{Answer, EllipsoidPair, InvalidQuery, Margin, MarginOptions, free_margin};
 
-/// The least margin of a robot's links about obstacles along a motion, without looking at most pairs.
+/// A scene of obstacles that finds the least margin of a robot's links along a motion, without computing most pairs.
 ///
 /// The obstacles lie in a tree of boxes, which is adjusted when they [move](Self::move_obstacles). For each link,
-/// groups of obstacles are left out if their box is farther than the least margin so far, in the norm in which the link
-/// is the unit ball. So are obstacles whose ball is too far away, and those beyond a plane across the line of centres,
-/// or across the normal at which the two were nearest when last solved. A link that has moved little is left out
-/// altogether, since √(1 + m) changes by no more than the link's motion in its own norm. The remaining pairs are solved
-/// as by [`free_margin`], so that the result is that of [`clearance`], to the last bit.
+/// groups of obstacles are left out if their box is farther than the least margin so far, in the norm in which the
+/// link is the unit ball. So are obstacles whose ball is too far away, and those beyond a plane across the line of
+/// centres, or across the normal at which the two were nearest when last solved. A link that has moved little is left
+/// out altogether, since √(1 + m) changes by no more than the link's motion in its own norm. The remaining pairs are
+/// solved as by [`free_margin`], so that the result is that of [`clearance`], to the last bit.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};
@@ -83,7 +83,7 @@ impl<V: Vector> Clearance<V> {
         })
     }
 
-    /// The obstacles where they are now.
+    /// The obstacles in their present places.
     #[must_use]
     pub fn obstacles(&self) -> &[Ellipsoid<V>] {
         &self.obstacles
@@ -108,8 +108,8 @@ impl<V: Vector> Clearance<V> {
         Ok(())
     }
 
-    /// The least margin, with the links where they are now. They may differ from those of the last step in any way. A
-    /// link counts as the same one, moved, if it has the same index and semi-axes.
+    /// The least margin, with the links in their present places. They may differ from those of the last step in any
+    /// way. A link counts as the same one, moved, if it has the same index and semi-axes.
     ///
     /// # Errors
     /// [`InvalidQuery::NoLinks`] if the list is empty.
@@ -153,8 +153,8 @@ impl<V: Vector> Clearance<V> {
         Ok(pairs)
     }
 
-    /// Like [`within`](Self::within), but calls a closure for each pair as it is found, with an answer that has
-    /// derivatives. Nothing is allocated.
+    /// The same pairs as [`within`](Self::within), given to a closure one by one as they are found, each with an answer
+    /// that has derivatives. Nothing is allocated.
     ///
     /// A planner can ask this about all links at all points of a trajectory at once: it gets a cost of each pair that
     /// is near, and the direction in which to move.

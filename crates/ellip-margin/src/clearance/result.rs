@@ -4,7 +4,7 @@ use convex_support::Vector;
 
 use crate::Margin;
 
-/// The least margin over all pairs of a link and an obstacle, and what was left out to find it.
+/// The least margin over all pairs of a link and an obstacle, and the numbers of pairs that were left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
@@ -21,9 +21,9 @@ pub struct ClearanceResult<V: Vector> {
     pub link: usize,
     /// The index of its obstacle.
     pub obstacle: usize,
-    /// How many pairs were solved.
+    /// The number of pairs that were solved.
     pub pairs_evaluated: usize,
-    /// The pairs that were not, by the reason why they cannot be the least.
+    /// The numbers of the other pairs, by the reason why they cannot be the least.
     pub left_out: LeftOut,
 }
 
@@ -40,7 +40,8 @@ pub struct LeftOut {
     pub by_sphere: usize,
     /// A plane across the line of centres separates the obstacle from the grown link.
     pub by_plane: usize,
-    /// So does a plane across the normal at which the link was nearest to the obstacle when the two were last solved.
+    /// A plane across the normal at which the link was nearest to the obstacle when the two were last solved separates
+    /// them.
     pub by_normal: usize,
 }
 

@@ -1,4 +1,4 @@
-//! How the margin changes as a body moves.
+//! The derivatives of the margin as a body moves.
 //!
 //! With w = x* − x₁, v = x* − x₂ and z = Qv, stationarity says Pw = −νz, and since the minimiser moves to second order
 //! only, the margin changes as (x* − x₁)ᵀP(x* − x₁) + ν((x* − x₂)ᵀQ(x* − x₂) − 1) does with x* and ν held:
@@ -25,7 +25,7 @@ use crate::pair::Pair;
 use crate::{Answer, Margin};
 
 impl<V: Vector> Answer<'_, V, Margin<V>> {
-    /// The gradient of the margin with respect to the motion of the first ellipsoid; zero where x₁ lies in E₂.
+    /// The gradient of the margin with respect to the motion of the first ellipsoid; zero if x₁ lies in E₂.
     ///
     /// ```
     /// use convex_support::{Ellipsoid, glam::DVec3};

@@ -26,7 +26,7 @@ use crate::polynomial;
 use crate::secular::Solution;
 use crate::{MarginOptions, Status};
 
-/// Two points and a slab that hold the Euclidean distance between them.
+/// Two points and a slab that bound the Euclidean distance between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
@@ -52,9 +52,9 @@ pub struct DistanceBracket<V: Vector> {
 pub struct Distance<V: Vector> {
     /// The distance; 0 where they overlap.
     pub distance: V::Scalar,
-    /// What is certain about it, with the closest points.
+    /// The bounds, with the closest points.
     pub bracket: DistanceBracket<V>,
-    /// How the iteration ended. Whatever this says, the bracket holds.
+    /// How the iteration ended. The bracket holds in any case.
     pub status: Status,
     /// The steps it took, after those for the margin.
     pub iterations: usize,
@@ -106,9 +106,9 @@ fn bracket_in<V: Vector, const N: usize>(
 }
 
 /// The Euclidean distance between `e1` and `e2` with its closest points, certified: the bracket is the width of a
-/// separating slab and the distance of two points, and closes to about 1e-12 of the distance (1e-7 in `f32`).
+/// separating slab and the distance of two points, and narrows to about 1e-12 of the distance (1e-7 in `f32`).
 ///
-/// Where the bodies overlap, which the sign of the margin decides, it is 0; so it may be where they are apart by less
+/// If the bodies overlap, which the sign of the margin decides, it is 0; it may also be 0 if they are apart by less
 /// than the rounding of their coordinates.
 ///
 /// ```

@@ -1,5 +1,5 @@
-//! The paper's own route to the margin: the minimal eigenvalue of a 2N×2N matrix, found among all of them by the QR
-//! algorithm. For comparison and teaching; feature `eigen`.
+//! The paper's own method for the margin: the minimal eigenvalue of a 2N×2N matrix, found among all of them by the QR
+//! algorithm. For comparison and teaching; feature `paper`.
 //!
 //! Rimon and Boyd, Theorem 2, with the misprint in the point corrected: (13) gives x* in the coordinates of the ball,
 //! and the point itself is x₂ + Q^-½[C − λ*I]⁻¹b. Entries of bbᵀ grow with the square of the condition of C, and the QR

@@ -23,13 +23,13 @@ use crate::{InvalidQuery, Margin, MarginOptions, Status};
 
 /// The paper's tracker of one pair along a trajectory, for comparison with [`MarginTracker`](crate::MarginTracker).
 ///
-/// Inverse iteration converges to the eigenvalue nearest to the last one, which is the minimal one only while steps are
-/// small: about five degrees. Like the paper's, it forms C, whose condition is the square of that of the bodies: at an
-/// aspect of 1e8 no digit of it is left, and a residual in terms of C is small for a wrong eigenvalue too. So what it
-/// finds is held against the bodies themselves. The point it leads to is a point of E₂, so that 1 + m is at most its
-/// squared distance from x₁ in the norm of E₁; the plane across the gradient there bounds 1 + m from below. A step
-/// where the two differ by more than the tolerance, relative to the lesser of m and 1 + m, or that ends at another
-/// eigenvalue or not at all, is solved by [`free_margin`](crate::free_margin) instead, and counted as a fallback.
+/// Inverse iteration converges to the eigenvalue nearest to the last one, which is the minimal one only while steps
+/// are small: about five degrees. Like the paper's, it forms C, whose condition is the square of that of the bodies:
+/// at an aspect of 1e8 no digit of it is left, and a residual in terms of C is small for a wrong eigenvalue too. So
+/// the result is checked with the bodies themselves. Its point is a point of E₂, so that 1 + m is at most its squared
+/// distance from x₁ in the norm of E₁; the plane across the gradient there bounds 1 + m from below. A step where the
+/// two differ by more than the tolerance, relative to the lesser of m and 1 + m, or that ends at another eigenvalue
+/// or not at all, is solved by [`free_margin`](crate::free_margin) instead, and counted as a fallback.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec2};
@@ -68,7 +68,7 @@ impl InverseIterationTracker {
         }
     }
 
-    /// The margin of `e1` about `e2` where they are now.
+    /// The margin of `e1` about `e2` in their present places.
     pub fn step<V: Vector>(&mut self, e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> Margin<V> {
         if V::DIM == 2 {
             let pair = Pair::<2>::new(e1, e2);
@@ -91,7 +91,7 @@ impl InverseIterationTracker {
         self.iterations
     }
 
-    /// The number of steps that inverse iteration could not answer: it ended at another eigenvalue, did not end within
+    /// The number of steps without an answer of inverse iteration: it ended at another eigenvalue, did not end within
     /// its limit, or had nothing to start from.
     #[must_use]
     pub const fn fallbacks(&self) -> u64 {

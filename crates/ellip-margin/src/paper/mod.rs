@@ -1,4 +1,4 @@
-//! The paper's own routes to the margin, corrected, to compare with and to learn from: feature `paper`.
+//! The paper's own methods for the margin, corrected, for comparison and teaching: feature `paper`.
 //!
 //! - [`free_margin_eigen`]: the minimal eigenvalue of a 2N×2N matrix, found among all of them by faer (Section 3).
 //! - [`InverseIterationTracker`]: the same eigenvalue along a trajectory, from that of the pose before (Section 4).

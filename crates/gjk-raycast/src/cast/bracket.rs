@@ -1,11 +1,10 @@
-//! What is certain about the first point of a ray in a body, of all that searches find: the only code that decides
-//! about a miss, a lower bound, or whether the two bounds have met, where a shape does not know it [for
-//! certain](super::certain()). Where the ray starts within rounding of the body, `start.rs` looks again at what was
-//! decided.
+//! The certain bounds on the first point of a ray in a body. Only this code decides about a miss, a lower bound, or
+//! whether the two bounds have met, unless the shape has a [certain crossing](super::certain()). If the ray starts
+//! within rounding of the body, `start.rs` measures again and may change the decision.
 //!
-//! A body lies behind each of its supporting planes, so that a ray is not in it before it has crossed the plane; and a
-//! ray is in it, at the latest, where it meets a point made of support points. The searches choose where to look, and
-//! may be as wrong as they like: what they find counts for what it is measured to be here.
+//! A body lies behind each of its supporting planes, so that a ray is not in it before it has crossed the plane; and
+//! a ray is in it, at the latest, where it meets a point made of support points. The searches choose where to look,
+//! and may be wrong: their results count only as they are measured here.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float;
@@ -21,26 +20,27 @@ use crate::{Iterate, RayCastOptions, Status};
 /// The largest tolerance, in sizes of the body.
 const LARGEST_TOLERANCE: f64 = 16.0;
 
-/// The cosine below which a plane counts as nearly along the line: its crossing is known to so many times fewer digits.
+/// The cosine below which a plane counts as nearly along the line: its crossing has so many times fewer accurate
+/// digits.
 const LEANS: f64 = 1.0 / 64.0;
 
-/// What rounding moves points by that a search compares, in units of ε times the size.
+/// How far rounding moves the points that a search compares, in units of ε times the size.
 pub(super) const NOISE: f64 = 8.0;
 
-/// How many errors deep a ray goes at least into a ball that rolls within the body, for its slope to tell where it is
-/// in the body for certain.
+/// The least depth, in errors, of a ray in a ball that rolls within the body, for its slope to prove where it is in
+/// the body.
 pub(super) const DEEP: f64 = 64.0;
 
-/// A support point of the core, and what it is made of.
+/// A support point of the core, with those of both shapes.
 pub(super) type SupportPoint<V> = (V, PointPair<V>);
 
-/// A parameter of the line, and how it moves with what it is the crossing of.
+/// A parameter of the line, and its sensitivity to the plane or point that it is the crossing of.
 #[derive(Clone, Copy, Debug)]
 struct Bound<S> {
     at: S,
-    /// By how much it moves for every unit that what it bounds is moved across the surface: the reciprocal of a slope.
+    /// How far it moves for every unit that the plane or point is moved across the surface: the reciprocal of a slope.
     spread: S,
-    /// By how much more than rounding that is.
+    /// A further bound on its error, besides rounding.
     more: S,
 }
 
@@ -58,7 +58,7 @@ struct PlaneCrossing<S> {
     slope: S,
 }
 
-/// The part of a ray that its first point in a body may be on.
+/// The part of a ray where its first point in a body may be.
 pub(super) struct Bracket<'a, V: Vector> {
     pub(super) body: &'a mut dyn CastBody<Vector = V>,
     pub(super) ray: LocalRay<V>,
@@ -66,9 +66,9 @@ pub(super) struct Bracket<'a, V: Vector> {
     pub(super) radius: V::Scalar,
     /// The radius of a ball that rolls within all of the body.
     pub(super) rolling_radius: V::Scalar,
-    /// What rounding moves the points by that the searches compare; they look no closer.
+    /// How far rounding moves the points that the searches compare; a search ends at this width.
     pub(super) noise: V::Scalar,
-    /// What a plane or a point is wrong by at most.
+    /// A bound on the error of a plane or a point.
     ///
     /// With `u = ε/2`, a point of the line loses `8u` of the size, `n·(x − p) − r` another `8u`, and the quotient by
     /// the slope `6u` of at most twice the size divided by the slope: with the support points' own error, one and a
@@ -86,7 +86,7 @@ pub(super) struct Bracket<'a, V: Vector> {
     /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative
     /// where the line misses it, and the half, which is then zero.
     chord: (V::Scalar, V::Scalar),
-    /// Where the last plane is crossed.
+    /// The crossing of the last plane.
     low: PlaneCrossing<V::Scalar>,
     /// The unit normal of that plane; `None` as long as no plane was crossed.
     normal: Option<V>,
@@ -95,25 +95,25 @@ pub(super) struct Bracket<'a, V: Vector> {
     entry: EntryProof,
     /// Where the line enters the hull of known points of the body.
     hull: V::Scalar,
-    /// Three points of the body that are seen around the line, two in the plane, where a search found them.
+    /// Three points of the body that surround the line as seen along it, two in the plane, if a search found them.
     pub(super) around: Option<[V; 3]>,
 }
 
-/// How far the upper bound is to be trusted.
+/// How certain the upper bound is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum EntryProof {
     /// The ray is in the body there, whatever the errors.
     Certain,
-    /// It is if the surface goes on as it was seen to, as far as an error reaches.
+    /// The ray is in the body there if the surface has the same slope within an error.
     BySlope,
     /// An edge, or a graze, may be within an error.
     InDoubt,
-    /// The outline of the body, as it is seen along the ray, is within an error: the ray may miss.
+    /// The outline of the body, projected along the ray, is within an error: the ray may miss.
     AtOutline,
 }
 
 impl<'a, V: Vector> Bracket<'a, V> {
-    /// A part of the ray, as far as it is in the ball about the body.
+    /// The part of a ray within the ball about the body.
     #[inline(always)]
     pub(super) fn new(
         body: &'a mut dyn CastBody<Vector = V>,
@@ -138,7 +138,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         let error = number(1.5) * noise + body_error + turned;
         let reach = size + error + error;
         let squared = reach * reach - ray.line.foot.length_squared();
-        // NaN, of a body that is none, stays NaN.
+        // NaN, of an invalid body, stays NaN.
         let half_chord = if squared < zero { zero } else { squared.sqrt() };
         Self {
             body,
@@ -167,12 +167,12 @@ impl<'a, V: Vector> Bracket<'a, V> {
         self.ray.line
     }
 
-    /// Where on the line the lower bound is.
+    /// The place of the lower bound on the line.
     pub(super) fn low(&self) -> V::Scalar {
         self.low.bound.at
     }
 
-    /// The same, if rounding moved it as far back as it may have.
+    /// The earliest place of the lower bound that rounding allows.
     pub(super) fn earliest(&self) -> V::Scalar {
         self.low.bound.at - self.noise * self.low.bound.spread
     }
@@ -182,8 +182,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
         self.ray.line.at(self.low())
     }
 
-    /// The cosine at which the last plane is crossed; or 1 where none was, as by a ray within the plane of a face: then
-    /// the bracket begins where the ray does.
+    /// The cosine at which the last plane is crossed; or 1 if there was none, as for a ray within the plane of a face:
+    /// then the bracket begins where the ray does.
     fn slope_or_one(&self) -> V::Scalar {
         if self.low.slope > Scalar::ZERO { self.low.slope } else { Scalar::ONE }
     }
@@ -193,7 +193,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         if self.low.slope > Scalar::ZERO { self.low.bound.spread } else { Scalar::ONE }
     }
 
-    /// Whether the upper bound has to be found by other means, for the ray to be known to be in the body anywhere.
+    /// Whether other means must prove that the ray is in the body anywhere, for an upper bound.
     pub(super) fn is_entry_open(&self) -> bool {
         match self.entry {
             EntryProof::Certain => false,
@@ -202,7 +202,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         }
     }
 
-    /// Whether the ray enters so steeply that it is soon in a ball that rolls within the body, whatever the errors.
+    /// Whether the ray enters so steeply that it is certainly soon in a ball that rolls within the body.
     ///
     /// A point of the body no more than `3e` below a plane that supports it is in such a ball, of radius `ρ`, no more
     /// than `√(6ρe)` beside its top, where the ball falls off at `√(6e/ρ)`: less than a third of a slope `s` with
@@ -214,46 +214,46 @@ impl<'a, V: Vector> Bracket<'a, V> {
         spread == Scalar::ZERO || radius > (self.error + more) * spread * spread * V::Scalar::from_f64(DEEP)
     }
 
-    /// Takes note that an edge, or a graze, may be within an error of where the ray enters.
+    /// Records that an edge, or a graze, may be within an error of where the ray enters.
     pub(super) fn doubt_entry(&mut self) {
         self.entry = EntryProof::InDoubt;
     }
 
-    /// Takes note that the outline of the body is within an error of the ray.
+    /// Records that the outline of the body is within an error of the ray.
     pub(super) fn touch_outline(&mut self) {
         self.entry = EntryProof::AtOutline;
     }
 
-    /// Whether another look, at what is near the hit alone, may tell that the ray is in the body.
+    /// Whether another measurement, of the surface near the hit alone, may prove that the ray is in the body.
     pub(super) fn is_worth_another_look(&self) -> bool {
         self.is_entry_open() && self.entry != EntryProof::AtOutline
     }
 
-    /// Moves the upper bound to where the ray is in the body whatever the errors.
+    /// Moves the upper bound to where the ray is certainly in the body.
     pub(super) fn enter_for_certain(&mut self, mu: V::Scalar) {
         (self.high, self.entry) = (Bound::exact(mu.max(self.low())), EntryProof::Certain);
     }
 
-    /// Moves the upper bound to where the ray pierces a triangle of points of the body that is seen around it by more
-    /// than an error; with its slope, and so the length of a normal that is 1 against the ray, that is known to an
+    /// Moves the upper bound to where the ray pierces a triangle of points of the body that surrounds it by more than
+    /// an error. Its slope gives the length of a normal that is 1 against the ray, and the upper bound is known to an
     /// error across it.
     pub(super) fn pierce(&mut self, mu: V::Scalar, length: V::Scalar) {
         (self.high, self.entry) =
             (Bound { at: mu.max(self.low()), spread: length, more: Scalar::ZERO }, EntryProof::Certain);
     }
 
-    /// Where on the line the body has a point, of a contact, and how far that may be from there.
+    /// The place on the line of the body's point at a contact, and how far the point may be from it.
     pub(super) fn point_near_line(&self) -> (V::Scalar, V::Scalar) {
         (self.high.at, self.error + self.noise + self.high.more)
     }
 
-    /// Whether the ray is before the last plane where it begins, whatever the errors.
+    /// Whether the ray is certainly before the last plane where it begins.
     pub(super) fn is_past_start(&self) -> bool {
         self.low() - self.certain(self.low.bound) > self.ray.start
     }
 
-    /// How far the bounds may stay apart, across the last plane: at most some sizes of the body, so that a bound that
-    /// is infinite since nothing is known is never near enough.
+    /// How far the bounds may stay apart, across the last plane: at most some sizes of the body, so that an infinite
+    /// bound, if nothing is known, is never near enough.
     pub(super) fn tolerance(&self) -> V::Scalar {
         self.noise.max(self.options.tolerance).min(Scalar::from_f64(LARGEST_TOLERANCE))
     }
@@ -281,7 +281,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         }
     }
 
-    /// The support point of the core along any vector `n`, and what it is made of.
+    /// The support point of the core along any vector `n`, with those of both shapes.
     ///
     /// An observer sees it beside `v`, the vector that led to `n`, and the points of the simplex that `v` is of.
     #[inline(always)]
@@ -305,18 +305,18 @@ impl<'a, V: Vector> Bracket<'a, V> {
         if point.is_finite() { Ok((point, witness)) } else { Err(Stop::Exhausted(Status::Stalled)) }
     }
 
-    /// How far rounding has moved a parameter of the line at most.
+    /// A bound on how far rounding has moved a parameter of the line.
     fn certain(&self, Bound { spread, more, .. }: Bound<V::Scalar>) -> V::Scalar {
         (self.error + more) * spread
     }
 
-    /// Whether the ray ends before a parameter of the line, even if that is wrong by its error.
+    /// Whether the ray ends before a parameter of the line, even with the parameter's error.
     fn is_past_end(&self, bound: Bound<V::Scalar>) -> bool {
         self.ray.lambda(bound.at) - self.ray.error(bound.at, self.certain(bound)) > self.options.max_lambda
     }
 
-    /// Moves the lower bound up to the plane across the unit vector `n` that supports the core at `point`, if it leaves
-    /// anything of the ray.
+    /// Moves the lower bound up to the plane across the unit vector `n` that supports the core at `point`, unless that
+    /// ends the search.
     #[inline(always)]
     pub(super) fn advance(&mut self, n: V, point: V) -> Result<(), Stop<V>> {
         if let Some(crossing) = self.crossing(n, point)?
@@ -327,9 +327,9 @@ impl<'a, V: Vector> Bracket<'a, V> {
         Ok(())
     }
 
-    /// The search ends if the plane across `n` that supports the core at `point` leaves nothing of the ray; otherwise
-    /// nothing changes. By rounding alone, the end of the ray may be where the hit is, and a ray that ends there finds
-    /// the hit where a longer one does.
+    /// The search ends if the plane across `n` that supports the core at `point` has the rest of the ray before it;
+    /// otherwise nothing changes. By rounding alone, the end of the ray may be where the hit is, and a ray that ends
+    /// there finds the hit where a longer one does.
     #[cold]
     #[inline(never)]
     pub(super) fn separate(&self, n: V, point: V) -> Result<(), Stop<V>> {
@@ -340,7 +340,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
     }
 
     /// Where the ray crosses the plane across the unit vector `n` that supports the core at `point`, if that is ahead;
-    /// or that the plane leaves nothing of the ray.
+    /// or that the plane has the rest of the ray before it.
     ///
     /// The body is behind the plane `n·y = n·p + r`. A point `x` of the ray is before it by `n·(x − p) − r`, and if
     /// that is positive and the ray approaches, it crosses the plane after `(n·(x − p) − r)/(−n·d)`, and not before.
@@ -357,12 +357,12 @@ impl<'a, V: Vector> Bracket<'a, V> {
             if leaves_first || self.is_past_end(bound) {
                 return Err(Stop::Miss(n));
             }
-            // A plane along the ray, to within its error, may be crossed anywhere. Beyond the ball nothing is to be
-            // found, and what is lost of a point of the line there is no longer relative to the size.
+            // A plane along the ray, to within its error, may be crossed anywhere. There is no hit beyond the ball, and
+            // the rounding of a point of the line there is no longer relative to the size.
             let at = if bound.at < self.chord.1 { bound.at } else { self.chord.1 };
             return Ok(Some(PlaneCrossing { bound: Bound { at, ..bound }, slope: -slope }));
         }
-        // What is left of the ray may begin earlier, where it is less far before a plane that it leaves.
+        // The rest of the ray may begin earlier, where it is less far before a plane that it leaves.
         let at_earliest = ahead - slope.max(zero) * self.certain(self.low.bound);
         if at_earliest > self.error { Err(Stop::Miss(n)) } else { Ok(None) }
     }
@@ -397,7 +397,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         if leans { self.low().min(mu.max(self.earliest()).max(self.ray.start)) } else { self.low() }
     }
 
-    /// The contact at the source of the ray, where points of the body are known on both sides of it, by more than
+    /// The contact at the source of the ray, if points of the body are known on both sides of it, by more than
     /// rounding.
     pub(super) fn close_inside(&mut self) -> RayContact<V> {
         let mu = self.ray.start;

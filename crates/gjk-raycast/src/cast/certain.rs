@@ -1,5 +1,4 @@
-//! The cast where a shape knows for certain where a line enters it: of a ray at it, and of a point or a ball that moves
-//! against it.
+//! The cast by the certain crossing of a shape: of a ray against it, and of a point or a ball that moves against it.
 
 use convex_support::numerics::bound::roundings;
 use convex_support::{CertainCrossing, LineQuery, Scalar, Vector};
@@ -12,13 +11,13 @@ use crate::body::{CastBody, Measures};
 use crate::observer::Observer;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCast, RayCastOptions, RayHit, Status};
 
-/// Whether what a shape answers of a whole line is asked for.
+/// Whether the cast needs only the crossing of the whole line.
 #[inline(always)]
 pub(crate) fn is_plain<V: Vector>(options: &RayCastOptions<V>) -> bool {
     options.min_lambda <= V::Scalar::ZERO && options.method == CastMethod::Portal && options.max_iterations > 0
 }
 
-/// The cast by what a shape answers of the line of the ray; `None` where that is not certain.
+/// The cast by the shape's crossing with the line of the ray; `None` if that is not certain.
 #[inline(always)]
 pub(crate) fn certain<V: Vector>(
     crossing: CertainCrossing<V>,
@@ -31,7 +30,7 @@ pub(crate) fn certain<V: Vector>(
         // To be refused.
         CertainCrossing::Misses(_) if options.max_lambda.is_nan() => return None,
         CertainCrossing::Misses(axis) => {
-            // What is left of it along the ray would count far from here.
+            // Its part along the ray would count far from here.
             let along = axis.dot(ray.direction) / ray.direction.length_squared();
             missed((axis - ray.direction * along).unit().unwrap_or(axis))
         }
@@ -39,7 +38,7 @@ pub(crate) fn certain<V: Vector>(
             let [earliest, latest] = bounds;
             let is_after_end = !(entry <= options.max_lambda);
             // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN and
-            // infinity tell nothing.
+            // infinity decide nothing.
             let begin = if is_after_end { options.max_lambda } else { zero };
             if !(earliest > begin && latest < infinity) {
                 return None;
@@ -54,8 +53,8 @@ pub(crate) fn certain<V: Vector>(
     Some(RayCast { outcome, lower, upper, status: Status::Converged, iterations: 1 })
 }
 
-/// The same, in plain numbers or by a closer look, of a body and a ray whose direction may be wrong by some part of its
-/// length; an observer sees the plane that tells it.
+/// The same, in plain numbers or in twice the precision, for a body and a ray whose direction may be wrong by some
+/// part of its length; an observer sees the plane of the answer.
 #[inline(always)]
 pub(crate) fn certain_closely<B: CastBody + ?Sized>(
     body: &mut B,
@@ -74,15 +73,15 @@ pub(crate) fn certain_closely<B: CastBody + ?Sized>(
         let reach = (ray.source - origin).norm() + (extent + radius) + (extent + radius);
         line = line.within(direction_error * reach);
     }
-    // Of a ray that begins inside, plain numbers tell where its line enters, and a closer look takes longer than a
-    // search. In a loop, so that what is compiled into this is there once.
+    // For a ray that begins inside, plain numbers give the entry of its line, and twice the precision takes longer than
+    // a search. In a loop, so that the inlined code is there only once.
     let known = [false, true].into_iter().find_map(|is_close| body.certain_crossing(LineQuery { is_close, ..line }));
     let answer = certain(known?, ray, options)?;
     show(&answer, body, ray, observer);
     Some(answer)
 }
 
-/// Shows an observer the plane that tells an answer.
+/// Shows an observer the plane of an answer.
 #[inline(always)]
 pub(crate) fn show<B: CastBody + ?Sized>(
     answer: &RayCast<B::Vector>,
@@ -103,9 +102,9 @@ pub(crate) fn show<B: CastBody + ?Sized>(
     observer.show(|| Iterate { iteration: 0, simplex: &[], v: axis, w, scale: Scalar::ONE, lower, upper });
 }
 
-/// Closes the bracket between the plane at the entry and the entry, or finds a plane that the whole ray is before: as
-/// with a search, what the shape says is where to look, and the plane is that of a support point. If it is not where
-/// the entry is, the answer is in doubt.
+/// Closes the bracket between the plane at the entry and the entry, or finds a plane that the whole ray is before.
+/// The shape's answer only tells where to look, as in a search, and the plane is that of a support point. If it is
+/// not where the entry is, the answer is in doubt.
 #[inline(always)]
 pub(super) fn at_certain_entry<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     let line = bracket.line();
@@ -139,8 +138,8 @@ pub(super) fn at_certain_entry<V: Vector>(bracket: &mut Bracket<'_, V>) -> Resul
     }
 }
 
-/// Where a line certainly enters the body, however far the error of a point of it moves it: what is computed of it
-/// there, and what the shape is wrong by, the shape knows.
+/// Where a line certainly enters the body, with the error of a point of the line included; the shape includes its own
+/// error and that of its computation.
 fn crossing<V: Vector>(bracket: &Bracket<'_, V>, Line { foot, direction }: Line<V>) -> Option<CertainCrossing<V>> {
     let scale = bracket.scale;
     let source = bracket.body.measures().origin + foot * scale;

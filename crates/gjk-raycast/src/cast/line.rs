@@ -32,17 +32,17 @@ const BEYOND: f64 = 8.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Part<S> {
     Whole,
-    /// What comes from the parameter λ on, from which its own is counted.
+    /// The part from the parameter λ on, from which its own is counted.
     From(S),
     /// The whole line, from beyond any body back to where the ray comes from.
     Reversed,
 }
 
-/// What is cast: a part of a ray, given in the world.
+/// The part of a ray to cast, given in the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CastRay<V: Vector> {
     pub(crate) ray: Ray<V>,
-    /// What the direction may be wrong by, as a part of its length.
+    /// A bound on the error of the direction, as a part of its length.
     pub(crate) direction_error: V::Scalar,
     /// Parameters are counted from where it begins.
     pub(crate) part: Part<V::Scalar>,
@@ -55,14 +55,14 @@ impl<V: Vector> CastRay<V> {
     }
 }
 
-/// A ray seen from a body, in the body's unit: a line, based where it is closest to the body's origin, and where on it
-/// the ray begins. However far the source, only numbers of the body's size take part in what follows.
+/// A ray in the frame and the unit of a body: a line, based where it is closest to the body's origin, and where on it
+/// the ray begins. However far the source is, all later numbers have the body's size.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LocalRay<V: Vector> {
     pub(crate) line: Line<V>,
     /// Where the source is on the line.
     pub(crate) start: V::Scalar,
-    /// What one unit of μ is in units of λ.
+    /// One unit of μ, in units of λ.
     per_unit: V::Scalar,
 }
 
@@ -117,7 +117,7 @@ impl<V: Vector> LocalRay<V> {
         (V::Scalar::from_f64(BEYOND) - self.start) * self.per_unit - lambda
     }
 
-    /// What the rounding of [`reverse`](Self::reverse) may have changed.
+    /// A bound on the rounding of [`reverse`](Self::reverse).
     pub(crate) fn error_of_reverse(&self) -> V::Scalar {
         self.error(V::Scalar::from_f64(BEYOND), V::Scalar::ZERO)
     }
@@ -134,7 +134,7 @@ impl<V: Vector> LocalRay<V> {
 
     /// The rounding error of [`lambda`](Self::lambda), of which `error` is due to `mu` itself.
     pub(crate) fn error(&self, mu: V::Scalar, error: V::Scalar) -> V::Scalar {
-        // At the start the difference is nothing, exactly.
+        // At the start the difference is exactly zero.
         let sum = if mu == self.start { V::Scalar::ZERO } else { mu.abs() + self.start.abs() };
         (error + V::Scalar::from_f64(4.0) * V::Scalar::EPSILON * sum) * self.per_unit
     }

@@ -1,4 +1,4 @@
-//! The ray cast on a body that [`ray_cast`](crate::ray_cast) and [`linear_cast`](crate::linear_cast) share.
+//! The ray cast against a body, shared by [`ray_cast`](crate::ray_cast) and [`linear_cast`](crate::linear_cast).
 //!
 //! A [`Bracket`] holds what is certain; the searches only choose where to look. `docs/ray-cast.md` derives them.
 
@@ -29,8 +29,8 @@ use portal::portal;
 use start::SettleFn;
 pub(crate) use start::{RayBodies, RayOf, settle_start, sliding};
 
-/// What is quicker than Algorithm 3 alone, and the second look at what that leaves open.
-#[allow(clippy::type_complexity, reason = "it is said once")]
+/// The searches that are quicker than Algorithm 3 alone, and the second measurement where they leave a doubt.
+#[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct Quicker<V: Vector> {
     cast: CastFn<V>,
     settle: SettleFn<V>,
@@ -46,7 +46,7 @@ impl<V: Vector> Quicker<V> {
 
 in_static!(Quicker);
 
-/// Support points until a search that begins with what the last frame tells counts as in doubt.
+/// Support points after which a search with a warm start counts as in doubt.
 const MAX_WARM: usize = 32;
 
 /// Casts a part of a ray against a body.
@@ -65,7 +65,7 @@ pub(crate) fn cast<V: Vector>(
     }
 }
 
-/// Looks first where the last frame tells to. What that leaves in doubt is cast again without it.
+/// Casts with the warm start first. If that leaves a doubt, casts again without it.
 #[inline(never)]
 fn warm_cast<V: Vector>(
     cast: CastFn<V>,
@@ -95,7 +95,7 @@ fn cast_by<V: Vector, const ALL: bool>(
     let mut bracket = Bracket::new(body, ray, options, observer);
     let found = match bracket.enter_ball() {
         Ok(()) if bracket.error < V::Scalar::infinity() => search::<V, ALL>(&mut bracket),
-        // Of numbers out of range nothing is known.
+        // Nothing is known about numbers out of range.
         Ok(()) => Err(Stop::Exhausted(Status::Stalled)),
         Err(stop) => Err(stop),
     };
@@ -105,7 +105,7 @@ fn cast_by<V: Vector, const ALL: bool>(
     conclude(&bracket, found)
 }
 
-/// What the shape knows first, then the quicker search, and Algorithm 3 where both are in doubt.
+/// First the certain crossing of the shape, then the quicker search, and Algorithm 3 if both are in doubt.
 #[inline(always)]
 fn search<V: Vector, const ALL: bool>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     if ALL && bracket.options.method == CastMethod::Portal {
@@ -121,7 +121,7 @@ fn search<V: Vector, const ALL: bool>(bracket: &mut Bracket<'_, V>) -> Result<Ra
             return Err(Stop::InDoubt);
         }
     }
-    // In the plane this is the search. Elsewhere it is what is left where rounding decides.
+    // In the plane this is the search. In space it decides where rounding left a doubt.
     bracket.doubt_entry();
     algorithm_3(bracket)
 }
@@ -132,31 +132,33 @@ pub(crate) struct RayContact<V: Vector> {
     mu: V::Scalar,
     /// The unit normal of a plane through that point, to rounding, that has the body behind it.
     normal: Option<V>,
-    /// What the core's point below it is made of.
+    /// The support points of both shapes for the core's point below it.
     witness: PointPair<V>,
 }
 
 /// Why a search ends without a contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Stop<V> {
-    /// A plane across this unit vector has the body behind it, and before it all that was left of the ray.
+    /// A plane across this unit vector has the body behind it, and the rest of the ray before it.
     Miss(V),
-    /// No more support points can be had: the iterations are used up, or the support map returned what is not finite.
+    /// There are no more support points: the iterations are used up, or the support map returned numbers that are not
+    /// finite.
     Exhausted(Status),
-    /// This search cannot tell; another may.
+    /// This search cannot decide; another may.
     InDoubt,
-    /// Nor can it here, where the line touches the body, to rounding; moved by this vector it runs inside.
+    /// The line touches the body here, to rounding, and this search cannot decide; moved by this vector, the line runs
+    /// inside.
     Touches(V),
 }
 
-/// What [`cast`] found; λ in units of the ray's direction.
+/// The result of [`cast`]; λ in units of the ray's direction.
 pub(crate) struct ObstacleCast<V: Vector> {
     pub(crate) outcome: Outcome<CastHit<V>, V>,
     pub(crate) lower: V::Scalar,
     pub(crate) upper: V::Scalar,
     pub(crate) status: Status,
     pub(crate) iterations: usize,
-    /// Whether the ray may miss what it is said to hit: then only a second look can tell where it enters.
+    /// Whether the reported hit may be a miss: then only a second measurement can tell where the ray enters.
     pub(crate) is_open: bool,
     /// The unit of the hit spot and of the witness.
     pub(crate) scale: V::Scalar,
@@ -168,7 +170,7 @@ pub(crate) struct CastHit<V: Vector> {
     pub(crate) normal: Option<V>,
     /// The hit spot, relative to the body's origin and in units of the scale.
     pub(crate) spot: V,
-    /// What the core's point below it is made of.
+    /// The support points of both shapes for the core's point below it.
     pub(crate) witness: PointPair<V>,
 }
 
@@ -183,7 +185,7 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
             let lambda = if starts_inside { zero } else { ray.lambda(mu).max(zero) };
             let (lower, upper) = bracket.bounds(Some(lambda));
             let max_lambda = bracket.options.max_lambda;
-            // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
+            // The returned λ decides whether a hit at the very end of the ray counts.
             if !(lambda > max_lambda) && lambda < infinity {
                 let hit = CastHit { lambda, normal, spot: ray.line.at(mu), witness };
                 (Outcome::Hit(hit), (lower, upper), Status::Converged)
@@ -192,8 +194,8 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
                 let lower = if lower > max_lambda { infinity } else { lower };
                 (Outcome::Miss(Miss { axis }), (lower, infinity), Status::Converged)
             } else {
-                // What may be hit anywhere, or not at all, may be hit before the end; and there is no number for a λ
-                // that overflows.
+                // If there may be a hit anywhere, or none, there may be one before the end; and a λ that overflows is
+                // no number.
                 (Outcome::Undecided, (if lower < infinity { lower } else { zero }, infinity), Status::Stalled)
             }
         }

@@ -9,13 +9,13 @@
 //! τ(0) ≤ μ + (h − μ)·e/(e + m).
 //! ```
 //!
-//! All points may be wrong by `e`, too: that raises the right side by `e`, and is taken from the distance of the sides.
-//! Of the polygon little matters but that it is wide, so that its corners may be support points across the line.
+//! All points may be wrong by `e`, too: this raises the right side by `e`, and is subtracted from the distance of the
+//! sides. The polygon only has to be wide, so that its corners may be support points across the line.
 //!
-//! Where the outline itself is within an error of the line, the ray may miss.
+//! If the outline itself is within an error of the line, the ray may miss.
 //!
-//! Left to a second look at the bodies after the hit, these bounds would take 33 support points in place of 7 in the
-//! plane, and more hits would have none.
+//! Without these bounds, a second measurement of the bodies after the hit would take 33 support points instead of 7
+//! in the plane, and more hits would have no bound.
 
 use convex_support::{Scalar, Vector};
 
@@ -23,17 +23,17 @@ use super::bracket::Bracket;
 use super::ray_frame::RayFrame;
 use crate::symmetric::{Across, cross, dot, way};
 
-/// As many corners as a polygon has at most.
+/// The most corners of a polygon.
 const MAX_CORNERS: usize = 8;
 
 /// How far from the line its sides are to be, in the bracket's unit of length.
 const WIDE: f64 = 0.0625;
 
-/// How many errors later than the known point the bound may be that a triangle gives, not to look for a wide polygon.
+/// If a triangle gives a bound at most so many errors later than the known point, no wide polygon is sought.
 const LATE: f64 = 32.0;
 
-/// Moves the upper bound of a contact ahead of the source, that may be at an edge or a graze, to where the ray is in
-/// the body whatever the errors, if the body is seen around the line by more than those.
+/// Moves the upper bound of a contact ahead of the source, that may be at an edge or a graze, to where the ray is
+/// certainly in the body, if points of the body surround the line by more than the errors.
 #[cold]
 #[inline(never)]
 pub(super) fn bound_entry<V: Vector>(bracket: &mut Bracket<'_, V>) {
@@ -56,7 +56,7 @@ impl<V: Vector> RayFrame<V> {
         ProjectedCorner { across, along: -against }
     }
 
-    /// The polygon of points that are seen around the line, of which there are two in the plane.
+    /// The polygon of points that surround the line, two of them in the plane.
     fn polygon(&self, points: [V; 3]) -> Polygon<V::Scalar> {
         let [p, q, s] = points.map(|p| self.corner(p));
         if V::DIM == 2 {
@@ -70,8 +70,8 @@ impl<V: Vector> RayFrame<V> {
         polygon
     }
 
-    /// A wide polygon of support points across the line, or one with a side that the outline is known to be near at;
-    /// `None` where no more points can be had.
+    /// A wide polygon of support points across the line, or one with a side that the outline is known to be near;
+    /// `None` if there are no more support points.
     fn look_around(&self, bracket: &mut Bracket<'_, V>, error: V::Scalar) -> Option<Polygon<V::Scalar>> {
         let radius = bracket.radius;
         let mut support = |toward: Across<V::Scalar>| {
@@ -121,7 +121,7 @@ struct PolygonSide<S> {
     distance: S,
     /// The unit vector across it, away from the polygon.
     outward: Across<S>,
-    /// Whether nothing of the body is beyond it, to an error.
+    /// Whether no part of the body is beyond it, to an error.
     is_outermost: bool,
 }
 
@@ -139,7 +139,8 @@ impl<S: Scalar> PolygonSide<S> {
     }
 }
 
-/// A polygon of points of the body as they are seen along the line, anticlockwise. That of two corners has two sides.
+/// A polygon of points of the body in the projection along the line, anticlockwise. A polygon of two corners has two
+/// sides.
 struct Polygon<S> {
     sides: [PolygonSide<S>; MAX_CORNERS],
     len: usize,
@@ -150,7 +151,7 @@ impl<S: Scalar> Polygon<S> {
         Self { sides: [PolygonSide::default(); MAX_CORNERS], len: 0 }
     }
 
-    /// In the plane, a point stands for a side across it, beyond which there is nothing.
+    /// In the plane, a point stands for a side across it, with no part of the body beyond.
     fn in_plane([right, left]: [ProjectedCorner<S>; 2]) -> Self {
         let mut polygon = Self::new();
         let one = S::ONE;
@@ -175,7 +176,7 @@ impl<S: Scalar> Polygon<S> {
         }
     }
 
-    /// Of some sides, the one that zero is the nearest to, or the farthest beyond.
+    /// Among the sides picked, the one that zero is nearest to, or farthest beyond.
     fn nearest_of(&self, is_meant: impl Fn(&PolygonSide<S>) -> bool) -> Option<usize> {
         let meant = (0..self.len).filter(|&i| is_meant(&self.sides[i]));
         meant.reduce(|i, j| if self.sides[j].distance < self.sides[i].distance { j } else { i })
@@ -186,8 +187,8 @@ impl<S: Scalar> Polygon<S> {
         self.sides().iter().any(|side| side.is_outermost && side.distance <= error + error)
     }
 
-    /// Where the line is in the body, at the latest, that has a point at `mu` to within an error; `None` where the
-    /// polygon is not around it by more than that.
+    /// Where the line is in the body, at the latest, given a point of the body at `mu` to within an error; `None` if
+    /// the polygon does not surround the line by more than that.
     fn latest_entry(&self, mu: S, error: S) -> Option<S> {
         let nearest = self.sides[self.nearest_of(|_| true)?];
         // NaN is no distance.

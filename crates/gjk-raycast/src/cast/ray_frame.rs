@@ -1,4 +1,4 @@
-//! A body as it is seen along a ray: support points, and planes that the ray crosses.
+//! A body in the frame of a ray: support points, and planes that the ray crosses.
 //!
 //! With `e₁`, `e₂` and the unit direction `d` of the ray for axes and the line's foot for origin, a point has
 //! coordinates `(u, v, t)`, and the line is `u = v = 0`. A plane that the ray approaches has a normal `n = α₁·e₁ +
@@ -18,13 +18,13 @@ use crate::body::{CastBody, PointPair};
 use crate::curvature;
 use crate::symmetric::{Across, Symmetric, axes_across, cross, dot, way};
 
-/// A support point as it is seen along the ray.
+/// A support point in the frame of the ray.
 #[derive(Clone, Copy, Default)]
 pub(super) struct RayPoint<V: Vector> {
     pub(super) u: V::Scalar,
     pub(super) v: V::Scalar,
     pub(super) t: V::Scalar,
-    /// The point of the core, and what it is made of.
+    /// The point of the core, and the support points of both shapes.
     pub(super) point: V,
     pub(super) witness: PointPair<V>,
     /// The plane it was found on, if the ray crosses it and the body is curved.
@@ -96,8 +96,8 @@ impl<S: Scalar> Alpha<S> {
     }
 }
 
-/// The same plane by a multiple of its normal, `a·e₁ + b·e₂ − c·d`. A support point does not wait for the division by
-/// `c`.
+/// The plane by a multiple of its normal, `a·e₁ + b·e₂ − c·d`, so that a support point need not wait for the division
+/// by `c`.
 #[derive(Clone, Copy)]
 pub(super) struct RayPlane<S> {
     pub(super) a: S,
@@ -120,13 +120,13 @@ impl<S: Scalar> RayPlane<S> {
     }
 }
 
-/// The axes of the ray, and the radius that is added to what is seen.
+/// The axes of the ray, and the radius that is added to support points.
 #[derive(Clone, Copy)]
 pub(super) struct RayFrame<V: Vector> {
     pub(super) axes: [V; 2],
-    /// The line; or where that only touches the body, one that is nearer to it by less than rounding.
+    /// The line; or if that only touches the body, one that is nearer to it by less than rounding.
     pub(super) line: Line<V>,
-    /// The part of the body's radius that support points are moved by: none where the search sweeps the core by itself.
+    /// The part of the body's radius that support points are moved by: zero if the search sweeps the core by itself.
     pub(super) radius: V::Scalar,
 }
 
@@ -163,7 +163,7 @@ impl<V: Vector> RayFrame<V> {
         Ok(self.see(swept, point, witness))
     }
 
-    /// A point of the body, of the core's point that it is moved from, and what that is made of.
+    /// A point of the body, given the core's point and the support points of both shapes.
     #[inline(always)]
     pub(super) fn see(&self, swept: V, point: V, witness: PointPair<V>) -> RayPoint<V> {
         let aside = swept - self.line.foot;
@@ -171,9 +171,10 @@ impl<V: Vector> RayFrame<V> {
         RayPoint { u, v, t, point, witness, alpha: None }
     }
 
-    /// Both shapes' support points as the normal of a plane that the ray crosses, one against it, changes across it.
+    /// The changes of both shapes' support points as the normal of a plane that the ray crosses, of length 1 against
+    /// the ray, changes across it.
     ///
-    /// What they move by is along the plane, `n·H·δ = 0`, so that the part across the ray tells all of it.
+    /// The points move along the plane, `n·H·δ = 0`, so that the part across the ray determines the change.
     pub(super) fn turned(
         &self,
         body: &dyn CastBody<Vector = V>,
@@ -198,7 +199,7 @@ impl<V: Vector> RayFrame<V> {
         plane: RayPlane<V::Scalar>,
     ) -> Result<RayPoint<V>, Stop<V>> {
         let mut seen = self.support(bracket, self.normal(plane))?;
-        // No polytope is asked where it was looked at along.
+        // Polytopes do not need the direction along which a point was found.
         seen.alpha = bracket.is_curved.then(|| plane.alpha());
         Ok(seen)
     }

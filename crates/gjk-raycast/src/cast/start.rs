@@ -1,7 +1,7 @@
-//! Where a cast begins in contact, or within a few errors of it: whether that is a hit.
+//! Casts that begin in contact, or within a few errors of it: whether the start is a hit.
 //!
-//! What a cast knows of its start is known to the errors of the largest number in it. Looked at [once
-//! more](crate::separation::near_contact_of()), a source may turn out to be apart from the target: then a ray that
+//! The cast's own bounds on its start have the errors of the largest number in it. A [second
+//! measurement](crate::separation::near_contact_of()) may prove the source apart from the target: then a ray that
 //! leaves or slides by misses, and one that approaches hits a little later.
 
 use convex_support::numerics::bound::{raised, roundings};
@@ -16,24 +16,24 @@ use crate::separation::{FromContact, NearContact, look_after, near_contact_of};
 use crate::shape::{Shape, WithoutLines};
 use crate::{Miss, Outcome, RayCastOptions, Status};
 
-/// What a ray is of, for a second look at it.
+/// The bodies of a ray, for a second measurement.
 pub(crate) struct RayBodies<'s, V: Vector> {
     /// The target, which is swept by a ball, its skin.
     pub(crate) a: Shape<'s, V>,
     pub(crate) skin: V::Scalar,
-    /// What draws the ray as it moves along its direction.
+    /// The shape or point whose motion is the ray.
     pub(crate) b: RayOf<'s, V>,
     pub(crate) direction: V,
 }
 
-/// Who draws a ray as it moves: a shape, or the point at the ray's source.
+/// What moves along a ray: a shape, or the point at the ray's source.
 pub(crate) enum RayOf<'s, V: Vector> {
     Shape(Shape<'s, V>),
     Point(V),
 }
 
-/// Decides about a hit that may be at the source, or elsewhere and open, or about a search that stalled before it left
-/// the source.
+/// Decides about a hit that may be at the source, or elsewhere without a certain bound, or about a search that
+/// stalled before it left the source.
 #[inline(always)]
 pub(crate) fn settle_start<V: Vector>(
     cast: &mut ObstacleCast<V>,
@@ -50,7 +50,7 @@ pub(crate) fn settle_start<V: Vector>(
 
 pub(super) type SettleFn<V> = fn(&mut ObstacleCast<V>, RayBodies<'_, V>, &RayCastOptions<V>);
 
-/// The second look at a cast whose hit may be at the source, or elsewhere and open.
+/// The second measurement for a cast whose hit may be at the source, or elsewhere without a certain bound.
 #[cold]
 #[inline(never)]
 pub(super) fn settle<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodies<'_, V>, options: &RayCastOptions<V>) {
@@ -78,7 +78,7 @@ pub(super) fn settle<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodies<'_
     cast.iterations += looks.iterations;
 }
 
-/// Decides by what is known of the bodies where the cast begins.
+/// Decides by the measured gap of the bodies where the cast begins.
 fn settle_at_start<V: Vector>(
     cast: &mut ObstacleCast<V>,
     [a, b]: [Shape<'_, V>; 2],
@@ -95,7 +95,7 @@ fn settle_at_start<V: Vector>(
     let axis = -near.normal;
     let closing = dot_minus((0..V::DIM).map(|i| (near.normal.get(i), direction.get(i))), zero);
     if !near.is_separated() {
-        // The source is in the target, to the error it is known to, or nothing is known.
+        // The source is in the target, to its own error, or nothing is known.
         if near.overlap().is_some() {
             cast.touch(latest_entry([a, b], direction, closing, &near, looks), spot);
         }
@@ -107,7 +107,7 @@ fn settle_at_start<V: Vector>(
         let (lambda, lower) = (at(near.gap), at(near.lower));
         let lower = lower - roundings(8.0, lower);
         let entry = entry([a, b], direction, closing, (&near, zero), looks);
-        // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
+        // The returned λ decides whether a hit at the very end of the ray counts.
         if lambda > max_lambda {
             cast.miss(axis);
             if lower <= max_lambda {
@@ -119,8 +119,8 @@ fn settle_at_start<V: Vector>(
     }
 }
 
-/// Where the source is, relative to the target's origin, the points of both closest to one another, and the unit of
-/// these lengths.
+/// The place of the source relative to the target's origin, the closest points of both, and the unit of these
+/// lengths.
 #[derive(Clone, Copy)]
 struct Spot<V: Vector> {
     source: V,
@@ -128,8 +128,8 @@ struct Spot<V: Vector> {
     scale: V::Scalar,
 }
 
-/// A bound on the λ at which the ray is in the target first, where the source is not known to be apart from it;
-/// infinite where it may miss.
+/// A bound on the λ at which the ray is in the target first, if the source is not proved apart from it; infinite if
+/// it may miss.
 fn latest_entry<V: Vector>(
     shapes: [Shape<'_, V>; 2],
     direction: V,
@@ -148,7 +148,7 @@ fn latest_entry<V: Vector>(
     entry(shapes, direction, speed, (near, zero), looks).certain()
 }
 
-/// The vector from a point of the target to the source, in the world's unit, where either may be moved by `astray`.
+/// The vector from a point of the target to the source, in the world's unit, if either may be moved by `astray`.
 fn from_contact<V: Vector>(near: &NearContact<V>, astray: V::Scalar) -> FromContact<V> {
     let &NearContact { normal: n, lower, upper, frame: Frame { scale, .. }, .. } = near;
     let upper = upper.max(V::Scalar::ZERO);
@@ -159,7 +159,7 @@ fn from_contact<V: Vector>(near: &NearContact<V>, astray: V::Scalar) -> FromCont
     FromContact { n, along: in_world(along), across: in_world(across), length: in_world(upper) }
 }
 
-/// Closing speeds no greater than this are of rounding: a normal is known to a few ε.
+/// Closing speeds up to this may be rounding: a normal is known to a few ε.
 pub(crate) fn sliding<S: Scalar>(speed: S) -> S {
     speed * S::EPSILON * S::from_f64(16.0)
 }
@@ -173,7 +173,7 @@ struct LatestEntry<S> {
 }
 
 impl<S: Scalar> LatestEntry<S> {
-    /// The same bound of a ray that is in the target for certain; infinite of others.
+    /// The bound if the ray is certainly in the target; infinite otherwise.
     fn certain(self) -> S {
         if self.is_certain { self.at } else { Float::infinity() }
     }
@@ -182,28 +182,27 @@ impl<S: Scalar> LatestEntry<S> {
 /// How many support points a depth takes after its last look at how many it has taken.
 const MORE: usize = 8;
 
-/// The support points that looks take, of those that may be taken.
+/// The support points left for further measurements.
 struct Looks {
     iterations: usize,
     max_iterations: usize,
 }
 
 impl Looks {
-    /// As many as are left for a depth, which may take a few more than it is to; `None` where none are.
+    /// The number left for a depth, which may take a few more than its limit; `None` if there are none.
     fn left(&self) -> Option<usize> {
         self.max_iterations.checked_sub(self.iterations + MORE).filter(|&left| left > 0)
     }
 }
 
-/// How often a ray is looked at, each time at most half as far from the source as before.
+/// The most places of a ray that are tested, each at most half as far from the source as the one before.
 const LOOKS: usize = 12;
 
-/// How often in a row it is looked at where that told nothing. Of a convex function that is zero to an error at the
-/// source and at two more places, the middle one halfway, the rest in between is no less than three errors below
-/// zero.
+/// The most places in a row that may give no result. If a convex function is zero to an error at the source and at
+/// two more places, the middle one halfway, it is no less than three errors below zero in between.
 const PATIENCE: usize = 2;
 
-/// How deep the ray is to be found at least, as a part of how deep it is going by its speed.
+/// The least depth of the ray at a place, as a part of the depth that its speed predicts.
 const DEEP: f64 = 0.25;
 
 /// How far aside the points are by which it is found, in units of that: far enough for little of a depth under a plane
@@ -279,9 +278,8 @@ fn entry<V: Vector>(
     best
 }
 
-/// The λ of a hit away from the source, at the latest, by what is known of the bodies there, where that is less than
-/// the slope at which the ray meets one plane may tell: they are known to so large an error that the next edge may be
-/// within it.
+/// The λ of a hit away from the source, at the latest, by the measured gap of the bodies there, if this is less than
+/// the slope at one plane gives: the error of the bodies is so large that the next edge may be within it.
 fn latest_after_hit<V: Vector>(
     [a, b]: [Shape<'_, V>; 2],
     direction: V,
@@ -332,8 +330,8 @@ impl<V: Vector> ObstacleCast<V> {
         (self.lower, self.upper) = (zero, within.max(lambda));
     }
 
-    /// Turns a hit at the source, as far as it was known, into one at `lambda`, where a plane across `axis` leaves
-    /// nothing to hit before `lower`.
+    /// Turns a hit at the source, as known so far, into one at `lambda`, if a plane across `axis` excludes any hit
+    /// before `lower`.
     fn enter(&mut self, lambda: V::Scalar, axis: V, lower: V::Scalar, entry: LatestEntry<V::Scalar>, spot: Spot<V>) {
         self.lower = self.lower.max(lower);
         let upper = entry.certain().max(self.lower);
@@ -347,7 +345,7 @@ impl<V: Vector> ObstacleCast<V> {
                 self.upper = upper;
                 self.hit(lambda.max(self.lower).min(upper), Some(axis), spot);
             }
-            // The ray runs along the target within rounding, and where it enters it, if ever, is not known.
+            // The ray runs along the target within rounding, and where it enters, if ever, is not known.
             Outcome::Undecided => {}
             _ => {
                 (self.outcome, self.upper, self.status) = (Outcome::Undecided, V::Scalar::infinity(), Status::Stalled);
@@ -355,7 +353,7 @@ impl<V: Vector> ObstacleCast<V> {
         }
     }
 
-    /// A hit that the search did not find, where the points closest to one another at the source are.
+    /// A hit that the search did not find, at the closest points at the source.
     fn hit(&mut self, lambda: V::Scalar, normal: Option<V>, Spot { source, points, scale }: Spot<V>) {
         let hit = CastHit { lambda, normal, spot: source, witness: points };
         (self.outcome, self.status, self.scale) = (Outcome::Hit(hit), Status::Converged, scale);

@@ -15,7 +15,7 @@ use convex_support::{Core, Hint, Scalar, SupportMap, Vector};
 use self::points::{Seen, points, wide};
 use crate::{Distance, Intersection, LinearCast, Motion, Outcome, Ray, RayCast};
 
-/// What proves a bracket: a plane for its lower end, support points for its upper end.
+/// The proof of a bracket: a plane for its lower end, support points for its upper end.
 ///
 /// Let `C` be the target of a ray, or `A − B` for two shapes, and let `K ⊕ B(r)` be its [core](convex_support::Core)
 /// and radius.
@@ -38,14 +38,14 @@ impl<V: Vector> Certificate<V> {
     }
 }
 
-/// A point of a core, told by the direction in which it is farthest, and its weight.
+/// A point of a core, given by the direction in which it is farthest, and its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WeightedSupport<V> {
-    /// The point is the farthest of the core along this direction, which may have any length. It has few decimals, and
-    /// is not along the normal of a face, so that it identifies one corner in whatever precision it is used.
+    /// The point is the farthest of the core along this direction, which may have any length. The direction has few
+    /// decimals, and is not along the normal of a face, so that it identifies one corner in any precision.
     pub direction: V,
-    /// Its weight; in double precision, as it is measured from the numbers of the shape.
+    /// Its weight, in double precision, as it is computed from the numbers of the shape.
     pub weight: f64,
 }
 
@@ -73,8 +73,7 @@ where
     Certificate { plane, points: points_of_pair(a, b, DVec3::ZERO, answer.normal, None) }
 }
 
-/// The certificate of [`intersects`](crate::intersects): a plane where the shapes are apart, and points where they
-/// overlap.
+/// The certificate of [`intersects`](crate::intersects): a plane if the shapes are apart, and points if they overlap.
 #[must_use]
 pub fn intersection_certificate<A, B>(a: &A, b: &B, answer: &Intersection<A::Vector>) -> Certificate<A::Vector>
 where
@@ -147,8 +146,8 @@ where
     Certificate { plane: hit.normal, points }
 }
 
-/// The axis of a miss, leaning along the ray where it is across it to rounding: that of a plane before all of a ray
-/// without end.
+/// The axis of a miss, tilted along the ray if it is across the ray to rounding: the normal of a plane before all of
+/// an endless ray.
 fn leaning<V: Vector>(axis: V, direction: DVec3) -> V {
     let (Some(n), Some(d)) = (wide(axis).try_normalize(), direction.try_normalize()) else { return axis };
     let rounding = V::Scalar::EPSILON.as_f64();

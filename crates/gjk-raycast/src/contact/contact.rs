@@ -1,4 +1,4 @@
-//! The contact of two shapes: which way, how deep, and in which points.
+//! The contact of two shapes: its normal, depth and points.
 
 use convex_support::{SupportMap, Vector};
 use num_traits::Float as _;
@@ -8,8 +8,8 @@ use super::manifold::manifold;
 use crate::{SignedDistanceOptions, signed_distance};
 
 /// The contact of two shapes; `None` if they are farther apart than `within`. The options are those of the signed
-/// distance, but `within` takes the place of the limit; NaN is nearer than nothing. The normal of the last frame is a
-/// good first [`axis`](SignedDistanceOptions::axis).
+/// distance, but `within` replaces the limit; with NaN there is no contact. The normal of the last frame is a good
+/// first [`axis`](SignedDistanceOptions::axis).
 ///
 /// ```
 /// use convex_support::{Cuboid, Posed, glam::DVec3};
@@ -30,9 +30,9 @@ use crate::{SignedDistanceOptions, signed_distance};
 ///
 /// The features of both shapes that face each other, each a vertex, an edge or a face
 /// ([`core_support_feature`](SupportMap::core_support_feature)), are clipped against each other in the plane of
-/// contact. A corner of their overlap belongs to the contact if the surfaces overlap there or are within what is asked
-/// for, but for a thousandth of the smaller shape's size. At most four are kept, in 2D two: those that span the overlap
-/// well, and one as deep as the shapes are, but for a thousandth of the size.
+/// contact. A corner of their overlap belongs to the contact if the surfaces there overlap or are no farther apart
+/// than `within`, but for a thousandth of the smaller shape's size. At most four corners are kept, in 2D two: those
+/// that span the overlap well, and one as deep as the shapes are, but for a thousandth of the size.
 pub fn contact<A, B>(
     a: &A,
     b: &B,
@@ -46,11 +46,11 @@ where
     contact_of(a, b, within, options, None)
 }
 
-/// [`contact`] of shapes that were in contact before: of the points of the `last` contact those are kept that still
-/// hold.
+/// [`contact`] of shapes that were in contact before. It keeps those points of the `last` contact that are still
+/// valid.
 ///
 /// A point is recognised by the numbers of its features. It is kept while the shapes are apart there by no more than
-/// twice the thousandth of their size that other points have, and while another one does not span the overlap much
+/// twice the thousandth of their size that other points may have, and while no other point spans the overlap much
 /// better. The last normal is the first [`axis`](SignedDistanceOptions::axis), if the options have none.
 pub fn contact_after<A, B>(
     last: &Contact<A::Vector>,

@@ -1,4 +1,4 @@
-//! What contact queries answer.
+//! The answers of contact queries.
 
 use convex_support::{Matrix, Posed, Scalar, SupportMap, Vector};
 
@@ -33,14 +33,14 @@ impl<V: Vector> Contact<V> {
         Self { normal, distance, points, len }
     }
 
-    /// The same of the shapes in the other order: of `b` with `a`.
+    /// The contact of the shapes in the other order: of `b` with `a`.
     pub fn reversed(self) -> Self {
         let points = self.points.map(ContactPoint::reversed);
         Self { normal: -self.normal, distance: self.distance.reversed(), points, len: self.len }
     }
 
-    /// Unit vectors across the normal and one another, along which friction acts; in 2D the second is zero. They follow
-    /// from the normal alone, so that impulses along them stay what they are while bodies rest.
+    /// Two unit vectors across the normal and each other, along which friction acts; in 2D the second is zero. They
+    /// follow from the normal alone, so that impulses along them keep their meaning while bodies rest.
     #[must_use]
     pub fn tangents(&self) -> [V; 2] {
         axes_across(self.normal)
@@ -63,9 +63,9 @@ pub struct ContactPoint<V: Vector> {
     pub point_b: V,
     /// How far `point_a` is before `point_b` along the normal; negative where the shapes overlap.
     pub signed_distance: V::Scalar,
-    /// What that is wrong by at most: the surfaces are not nearer to one another along this line than the signed
-    /// distance less this. The points are of the shapes to rounding; where a side is so steep that it is nearly along
-    /// the normal, to this. Of polytopes it is rounding.
+    /// A bound on the error of the signed distance: the surfaces are not nearer to one another along this line than the
+    /// signed distance less this. The points are on the surfaces to rounding, or to this error where a side is nearly
+    /// along the normal. For polytopes it is rounding.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub error: V::Scalar,
     /// The vertex, edge or face of `a` that the point is on, as a number. It stays the same from frame to frame as long
@@ -76,8 +76,7 @@ pub struct ContactPoint<V: Vector> {
 }
 
 impl<V: Vector> ContactPoint<V> {
-    /// The points of both bodies in the frames of their shapes, before these were posed: where they are as the bodies
-    /// move on.
+    /// The points of both bodies in the frames of their unposed shapes, which stay the same as the bodies move on.
     #[must_use]
     pub fn anchors<A, B>(&self, a: &Posed<A>, b: &Posed<B>) -> [V; 2]
     where
@@ -88,8 +87,8 @@ impl<V: Vector> ContactPoint<V> {
         [of_a, b.rotation().transpose_mul(self.point_b - b.translation())]
     }
 
-    /// The velocity of the point of `a` relative to that of `b`, of bodies that move like this from now on. Along the
-    /// normal it is negative where they approach.
+    /// The velocity of the point of `a` relative to that of `b`, for bodies that begin these motions now. Its part
+    /// along the normal is negative if they approach.
     #[must_use]
     pub fn relative_velocity<A, B>(&self, motion_a: &A, motion_b: &B) -> V
     where
@@ -99,7 +98,7 @@ impl<V: Vector> ContactPoint<V> {
         motion_a.velocity(Scalar::ZERO, self.point_a) - motion_b.velocity(Scalar::ZERO, self.point_b)
     }
 
-    /// The same of the shapes in the other order.
+    /// The point for the shapes in the other order.
     #[must_use]
     pub fn reversed(self) -> Self {
         Self {

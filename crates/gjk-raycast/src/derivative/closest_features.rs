@@ -12,22 +12,24 @@ use crate::unit::power_of_two_near;
 /// The error of the normal, in units of the rounding of the points that it is computed from.
 const TILT: f64 = 64.0;
 
-/// The largest error of a normal, as an angle, that is allowed for; a larger one would call features parallel that lean
-/// visibly. And the largest angle within which features are tried that may hold the normal.
+/// The largest error of a normal, as an angle, that is allowed for; with a larger one, features that visibly lean
+/// would count as parallel. It is also the largest angle within which features are tried that may hold the normal.
 const LARGEST_TILT: f64 = 1e-3;
 const LARGEST_REACH: f64 = 0.03;
 
-/// Where two bodies are closest, or deepest in one another: a vertex, an edge or a face of each, and how they curve
-/// there.
+/// The features of two bodies at their closest or deepest points: a vertex, an edge or a face of each, with its
+/// curvature.
 ///
-/// It says whether an answer changes [smoothly](Self::smoothness) with the poses of the bodies. If it does, it has the
-/// [velocities of the normal and the points](Self::velocities) and the [second derivatives](Self::hessian); if not, it
-/// still has [one-sided derivatives](Self::rate). It is found from an answer and the shapes that were asked about, by
-/// [`SignedDistance::closest_features`](crate::SignedDistance::closest_features) and the same methods of other answers.
+/// They tell whether an answer changes [smoothly](Self::smoothness) with the poses of the bodies. If it does, they
+/// have the [velocities of the normal and the points](Self::velocities) and the [second derivatives](Self::hessian);
+/// if not, they still have [one-sided derivatives](Self::rate).
+/// [`SignedDistance::closest_features`](crate::SignedDistance::closest_features) and the same methods of other
+/// answers find them, given the shapes of the query.
 ///
-/// Faces and edges are found by [`SupportMap::core_support_feature`](convex_support::SupportMap::core_support_feature).
-/// A shape that does not implement it, such as a sum or a hull, is taken to be smooth. Of a face with more than 16
-/// corners only every second, third, … is [known](Self::are_complete).
+/// Faces and edges are found by
+/// [`SupportMap::core_support_feature`](convex_support::SupportMap::core_support_feature). A shape that does not
+/// implement it, such as a sum or a hull, counts as smooth. If a face has more than 16 corners, only every second,
+/// third, … is [known](Self::are_complete).
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct ClosestFeatures<V: Vector> {
@@ -45,16 +47,16 @@ pub struct ClosestFeatures<V: Vector> {
     pub(super) radii: [V::Scalar; 2],
     /// The Hessians of both support values, radii included, across the normal. Zero along an edge, and on a face.
     pub(super) hessians: [Symmetric<V::Scalar>; 2],
-    /// Whether the feature of a body is an edge that turns with the normal, as the side of a cone.
+    /// Whether the feature of a body is an edge that turns with the normal, like the side of a cone.
     pub(super) are_turning: [bool; 2],
-    /// Whether the Hessians foretell the support points nearby.
+    /// Whether the Hessians predict the support points nearby.
     pub(super) is_foretold: bool,
     /// The features, relative to the middle.
     pub(super) outlines: [Outline<V::Scalar>; 2],
     pub(super) spans: [Span<V::Scalar>; 2],
-    /// What the normal may be wrong by.
+    /// A bound on the error of the normal.
     pub(super) tilt: V::Scalar,
-    /// Whether another way out of one another is as short.
+    /// Whether another way out of the overlap is as short.
     pub(super) is_tied: bool,
     /// Whether the answer is zero and cannot fall, or is so to its error.
     pub(super) is_at_floor: bool,
@@ -73,7 +75,7 @@ pub(super) struct ClosestPoints<V: Vector> {
     pub(super) normal: V,
     pub(super) points: [V; 2],
     pub(super) signed_distance: V::Scalar,
-    /// By how much the signed distance may be wrong.
+    /// A bound on the error of the signed distance.
     pub(super) error: V::Scalar,
     /// Whether the normal is that of slightly different poses: the normal of a hit is that of a time near it.
     pub(super) is_near: bool,
@@ -127,7 +129,7 @@ impl<V: Vector> ClosestFeatures<V> {
         joint.filter(|joint| V::DIM == 3 || !matches!(joint, DifferenceSpan::Crossed(_)))
     }
 
-    /// How hard it is to turn the normal: the sum of the Hessians and the signed distance.
+    /// The stiffness of the normal: the sum of the Hessians and the signed distance.
     pub(super) fn stiffness(&self) -> Symmetric<V::Scalar> {
         let [a, b] = self.hessians;
         Symmetric { a: a.a + b.a, b: a.b + b.b, d: a.d + b.d }.plus(self.signed_distance)
@@ -143,8 +145,8 @@ impl<V: Vector> ClosestFeatures<V> {
         rounding + self.tilt * (a + b)
     }
 
-    /// Whether the features are known as a whole. If a shape shows only a part of a face, as of one with more than 16
-    /// corners, they are not; then one-sided [rates](Self::rate) take only the points of that part into account.
+    /// Whether the features are known as a whole. They are not if a shape shows only a part of a face, as for a face
+    /// with more than 16 corners; then one-sided [rates](Self::rate) take only the points of this part into account.
     #[must_use]
     pub fn are_complete(&self) -> bool {
         self.outlines.iter().all(|outline| outline.is_complete)
@@ -156,7 +158,7 @@ impl<V: Vector> ClosestFeatures<V> {
         self.normal
     }
 
-    /// The closest point of `a`, to rounding; where there are several, the one of the answer.
+    /// The closest point of `a`, to rounding; if there are several, the one of the answer.
     #[must_use]
     pub fn point_a(&self) -> V {
         self.points[0]
@@ -169,7 +171,7 @@ impl<V: Vector> ClosestFeatures<V> {
     }
 }
 
-/// What a normal is wrong by that is known to rounding.
+/// The error of a normal that is known to rounding.
 pub(super) fn rounding<S: Scalar>() -> S {
     S::EPSILON * S::from_f64(TILT)
 }

@@ -1,4 +1,4 @@
-//! The features that answers are about.
+//! The closest features of answers.
 
 use convex_support::{Core, Point, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
@@ -11,16 +11,15 @@ use crate::{
     Distance, Impact, Ray, RayHit, RigidMotion, SignedDistance, SignedDistanceOptions, Trajectory, signed_distance,
 };
 
-/// How far overlapping bodies are pushed into one another to see whether there is another way out, as a part of their
-/// size, in units of the square root of ε. If bodies are farther apart than this at a hit, the cast had a target
-/// distance.
+/// How far overlapping bodies are pushed into one another to test for another way out, as a part of their size, in
+/// units of the square root of ε. If bodies are farther apart than this at a hit, the cast had a target distance.
 const LITTLE: f64 = 64.0;
 
 /// How much a push may gain: at most so many times its square, in units of the size, and at most this part of the size,
 /// which leaves room for single precision.
 const GAIN: [f64; 2] = [256.0, 1e-4];
 
-/// If the cosine of the angle between two normals is at least this, they are of the same way out.
+/// If the cosine of the angle between two normals is at least this, they belong to the same way out.
 const SAME_NORMAL: f64 = 1.0 - 1e-6;
 
 fn little<S: Scalar>(size: S) -> S {
@@ -28,7 +27,7 @@ fn little<S: Scalar>(size: S) -> S {
 }
 
 impl<V: Vector> Distance<V> {
-    /// The features that are closest, of the shapes that were asked about; `None` where they overlap.
+    /// The closest features, given the shapes of the query; `None` if they overlap.
     #[must_use]
     pub fn closest_features(
         &self,
@@ -43,7 +42,7 @@ impl<V: Vector> Distance<V> {
         Some(ClosestFeatures { is_at_floor, ..features_at(a, b, closest) })
     }
 
-    /// The answer with the normal and the points of its [features](Self::closest_features), which are known to
+    /// The answer with the normal and the points of its [features](Self::closest_features), which are accurate to
     /// rounding.
     pub fn refined(self, features: &ClosestFeatures<V>) -> Self {
         let [point_a, point_b] = features.points;
@@ -52,11 +51,11 @@ impl<V: Vector> Distance<V> {
 }
 
 impl<V: Vector> SignedDistance<V> {
-    /// The features that are closest, or deepest in one another, of the shapes that were asked about.
+    /// The closest or deepest features, given the shapes of the query.
     ///
-    /// Where the cores of the shapes overlap, another [`signed_distance`] tells whether there is another way out that
-    /// is as short: it is that of `a` pushed on by a millionth of the size, against the normal, which makes any other
-    /// way the shorter one.
+    /// If the cores of the shapes overlap, another [`signed_distance`] tells whether there is another way out that is
+    /// as short: it is that of `a` pushed on by a millionth of the size, against the normal, which makes any other way
+    /// the shorter one.
     pub fn closest_features(
         &self,
         a: &dyn SupportMap<Vector = V>,
@@ -74,7 +73,7 @@ impl<V: Vector> SignedDistance<V> {
         features
     }
 
-    /// The answer with the normal and the points of its [features](Self::closest_features), which are known to
+    /// The answer with the normal and the points of its [features](Self::closest_features), which are accurate to
     /// rounding.
     pub fn refined(self, features: &ClosestFeatures<V>) -> Self {
         let [point_a, point_b] = features.points;
@@ -113,9 +112,9 @@ compiled_once! {
 }
 
 impl<V: Vector> Impact<V> {
-    /// The features that touch, of the bodies that were cast with the given motions, those of a
-    /// [`linear_cast`](crate::linear_cast) being its [translations](crate::Motion::translations); `None` where they
-    /// overlap at the start.
+    /// The features that touch, given the bodies and motions of the cast; the motions of a
+    /// [`linear_cast`](crate::linear_cast) are its [translations](crate::Motion::translations). `None` if they overlap
+    /// at the start.
     #[must_use]
     pub fn closest_features(
         &self,
@@ -127,17 +126,16 @@ impl<V: Vector> Impact<V> {
         touching(self.normal?, self.point, self.time, (a, motion_a), (b, motion_b))
     }
 
-    /// The hit with the normal and the point of its [features](Self::closest_features), which are known to rounding,
+    /// The hit with the normal and the point of its [features](Self::closest_features), which are accurate to rounding,
     /// and so its [gradient](Self::gradient).
     #[must_use]
     pub fn refined(self, features: &ClosestFeatures<V>) -> Self {
         Self { normal: Some(features.normal), point: features.points[1], ..self }
     }
 
-    /// How much later the bodies touch as their start poses begin to move, per unit of time of that motion: the
-    /// one-sided derivative of the time of contact. It is exact also where parallel faces or edges touch. `None` where
-    /// there is no [`gradient`](Self::gradient), or the normal is [not the only
-    /// one](ClosestFeatures::is_normal_unique).
+    /// The one-sided derivative of the time of contact by a motion of the start poses: how much later the bodies touch,
+    /// per unit of time of that motion. It is exact also where parallel faces or edges touch. `None` if there is no
+    /// [`gradient`](Self::gradient), or the normal is [not the only one](ClosestFeatures::is_normal_unique).
     #[must_use]
     pub fn rate(
         &self,
@@ -150,7 +148,7 @@ impl<V: Vector> Impact<V> {
 }
 
 impl<V: Vector> RayHit<V> {
-    /// The feature of the target that the ray hits, and its point for the other; `None` where the source is in the
+    /// The feature of the target that the ray hits, with the ray's point as the other; `None` if the source is in the
     /// target.
     #[must_use]
     pub fn closest_features(&self, target: &dyn SupportMap<Vector = V>, ray: Ray<V>) -> Option<ClosestFeatures<V>> {
@@ -159,7 +157,7 @@ impl<V: Vector> RayHit<V> {
         touching(self.normal?, self.point, self.lambda, (&tip, &motion), (target, &RigidMotion::default()))
     }
 
-    /// The hit with the normal of its [feature](Self::closest_features), which is known to rounding, and so its
+    /// The hit with the normal of its [feature](Self::closest_features), which is accurate to rounding, and so its
     /// [gradient](Self::gradient).
     #[must_use]
     pub fn refined(self, features: &ClosestFeatures<V>) -> Self {
@@ -193,7 +191,7 @@ compiled_once! {
     }
 }
 
-/// A body where its motion has taken it at a time.
+/// A body moved to a time of its motion.
 fn at_time<'s, V: Vector>(
     (shape, motion): (Shape<'s, V>, &dyn Trajectory<Vector = V>),
     time: V::Scalar,

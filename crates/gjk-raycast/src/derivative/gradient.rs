@@ -41,8 +41,8 @@ impl<V: Vector> ClosestFeatures<V> {
     /// [smooth](Self::smoothness).
     ///
     /// The [gradient](SignedDistance::gradient) of an answer uses the normal and the points of the answer. For curved
-    /// shapes these are known only to about half their digits, since the distance is stationary in them; here they are
-    /// known to rounding.
+    /// shapes these are accurate only to about half their digits, since the distance is stationary in them; here they
+    /// are accurate to rounding.
     pub fn gradient(&self) -> PairGradient<V> {
         PairGradient::new(self.normal, self.points[0], self.points[1])
     }
@@ -50,12 +50,12 @@ impl<V: Vector> ClosestFeatures<V> {
 
 impl<V: Vector> Distance<V> {
     /// The derivative of the distance by the poses and radii of both shapes. It is zero where they overlap, since the
-    /// distance then stays 0 however they move; the derivative of [`signed_distance`](crate::signed_distance) tells the
+    /// distance then stays 0 however they move; the derivative of [`signed_distance`](crate::signed_distance) shows the
     /// way out.
     ///
-    /// Where there is only one pair of closest points it is the derivative, and elsewhere one of several one-sided
+    /// If there is only one pair of closest points it is the derivative, otherwise one of several one-sided
     /// derivatives; [`closest_features`](Self::closest_features) tells which. For translations alone it is the
-    /// derivative of any two shapes that are apart. It is as accurate as the normal and the points of the answer.
+    /// derivative for any two shapes that are apart. It is as accurate as the normal and the points of the answer.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -82,7 +82,7 @@ impl<V: Vector> Distance<V> {
 impl<V: Vector> SignedDistance<V> {
     /// The derivative of the signed distance by the poses and radii of both shapes, at any depth.
     ///
-    /// Where the normal and the points are the only ones it is the derivative, and elsewhere one of several one-sided
+    /// If there is only one normal and one pair of points it is the derivative, otherwise one of several one-sided
     /// derivatives; [`closest_features`](Self::closest_features) tells which. It is as accurate as the normal and the
     /// points of the answer.
     ///
@@ -111,8 +111,8 @@ impl<V: Vector> SignedDistance<V> {
     }
 }
 
-/// The force `−n/(n·w)` at a point of contact, of which a displacement of the body on the normal's side puts off the
-/// hit; `w` is the velocity there as seen from the other body. `None` where the two do not approach one another.
+/// The force `−n/(n·w)` at a point of contact: moving the body on the normal's side along it delays the hit. `w` is
+/// the velocity there relative to the other body. `None` if the two do not approach one another.
 fn at_contact<V: Vector>(normal: Option<V>, velocity: V, point: V) -> Option<MotionGradient<V>> {
     let closing = -normal?.dot(velocity);
     let force = normal? / closing;
@@ -137,13 +137,12 @@ pub struct RayCastGradient<V: Vector> {
 }
 
 impl<V: Vector> RayHit<V> {
-    /// The derivatives of λ, for the ray of the cast that it is the answer of. `None` where the source is in the
-    /// target, so that λ is 0.
+    /// The derivatives of λ, given the ray of the cast. `None` if the source is in the target, so that λ is 0.
     ///
-    /// With `n` the normal and `d` the direction, the ray comes nearer to the tangent plane by `−n·d` per λ, so that
-    /// moving the source by `δ` changes λ by `−n·δ/(n·d)`, moving the target by the opposite, and changing the
-    /// direction by `λ` times as much. The derivatives grow as `1/(n·d)` towards grazing rays. At an edge of the target
-    /// they are one-sided.
+    /// With `n` the normal and `d` the direction, the ray comes nearer to the tangent plane by `−n·d` per λ. So moving
+    /// the source by `δ` changes λ by `−n·δ/(n·d)`, moving the target by the opposite, and changing the direction by
+    /// `λ` times as much. The derivatives grow as `1/(n·d)` towards grazing rays. At an edge of the target they are
+    /// one-sided.
     ///
     /// ```
     /// use convex_support::{Ball, MotionGradient, Posed, glam::DVec2};
@@ -177,13 +176,13 @@ impl<V: Vector> RayHit<V> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct ImpactGradient<V: Vector> {
-    /// By the pose of `a` at the start. Its motion stays what it is, the centre included.
+    /// By the pose of `a` at the start. Its motion does not change, the centre included.
     pub pose_a: MotionGradient<V>,
     /// By the pose of `b` at the start.
     pub pose_b: MotionGradient<V>,
-    /// By the place of `a` at the time of contact. With it the time can be derived by any parameter of the motion: find
-    /// how the parameter displaces the body at that time. [`RigidMotion::gradient`] does so for the parameters of a
-    /// rigid motion; by its velocity it is the time times the derivative by a translation.
+    /// By the place of `a` at the time of contact. It gives the derivative by any parameter of the motion: find how the
+    /// parameter displaces the body at that time. [`RigidMotion::gradient`] does so for the parameters of a rigid
+    /// motion; by its velocity it is the time times the derivative by a translation.
     pub contact_a: MotionGradient<V>,
     /// By the place of `b` at the time of contact.
     pub contact_b: MotionGradient<V>,
@@ -206,17 +205,16 @@ pub struct RigidMotionGradient<V: Vector> {
 }
 
 impl<V: Vector> Impact<V> {
-    /// The derivatives of the time of first contact, for the motions of the cast that it is the answer of. `None` where
-    /// the bodies overlap at the start, since the time is then 0, or touch and do not approach one another, since it
-    /// then jumps. The motions of a [`linear_cast`](crate::linear_cast) are its
-    /// [translations](crate::Motion::translations).
+    /// The derivatives of the time of first contact, given the motions of the cast. `None` if the bodies overlap at the
+    /// start, since the time is then 0, or touch and do not approach one another, since it then jumps. The motions of a
+    /// [`linear_cast`](crate::linear_cast) are its [translations](crate::Motion::translations).
     ///
-    /// With `n` the normal at the time `t`, `p` the point of contact and `w` the velocity there of `a` as seen from
-    /// `b`, a displacement `δ` of `a` at that time changes it by `−n·δ/(n·w)`. A displacement of the start pose is
-    /// turned by the motion until then: the force on it is `Rᵀ(−n/(n·w))`, at the point of the body that will be in
-    /// contact, where that is at the start. The derivatives grow as `1/(n·w)` towards grazing contacts.
+    /// With `n` the normal at the time `t`, `p` the point of contact and `w` the velocity there of `a` relative to `b`,
+    /// a displacement `δ` of `a` at that time changes it by `−n·δ/(n·w)`. The motion turns a displacement of the start
+    /// pose until then: the force on the start pose is `Rᵀ(−n/(n·w))`, at the starting place of the body's point of
+    /// contact. The derivatives grow as `1/(n·w)` towards grazing contacts.
     ///
-    /// Where there is only one point of contact they are derivatives, and elsewhere one-sided derivatives;
+    /// If there is only one point of contact they are derivatives, otherwise one-sided derivatives;
     /// [`closest_features`](Self::closest_features) tells which.
     ///
     /// ```
@@ -280,7 +278,7 @@ impl<V: Vector> Impact<V> {
     }
 }
 
-/// What a force at the given time is to the pose at the start.
+/// The force on the pose at the start that corresponds to a force at the given time.
 fn at_start<V: Vector>(
     motion: &dyn Trajectory<Vector = V>,
     time: V::Scalar,
@@ -291,22 +289,22 @@ fn at_start<V: Vector>(
     MotionGradient::force(turned_back, start_of(&displacement, force.point))
 }
 
-/// Where the point was at the start that a displacement takes to `x`. With `P` the pivot and `s` its shift,
+/// Where the point that a displacement takes to `x` was at the start. With `P` the pivot and `s` its shift,
 /// `x = P + s + R·(x₀ − P)`, so that a change of the start pose is turned: `δx = R·δx₀`.
 pub(super) fn start_of<V: Vector>(displacement: &Displacement<V>, x: V) -> V {
     displacement.pivot + displacement.rotation().transpose_mul(x - displacement.pivot - displacement.shift)
 }
 
 impl<V: Vector> RigidMotion<V> {
-    /// The change per unit of time of a number with this derivative, as the body begins to move. If the motion is what
-    /// a joint does per radian, it is the change per radian of the joint.
+    /// The change per unit of time of a number with this derivative, as the body begins to move. If the motion is that
+    /// of a joint per radian, it is the change per radian of the joint.
     #[must_use]
     pub fn rate_of(&self, gradient: MotionGradient<V>) -> V::Scalar {
         gradient.prismatic(self.velocity) + gradient.revolute(self.center, self.angular_velocity)
     }
 
-    /// The derivatives of a number by the parameters of this motion, given `force`, its derivative by the pose that the
-    /// body has at `time`; such as [`ImpactGradient::contact_a`] and the time of the hit.
+    /// The derivatives of a number by the parameters of this motion, given `force`, its derivative by the pose of the
+    /// body at `time`; such as [`ImpactGradient::contact_a`] and the time of the hit.
     ///
     /// With `x = c + t·v + y`, `y = R(tω)·(x₀ − c)`, the parameters displace a point by
     ///

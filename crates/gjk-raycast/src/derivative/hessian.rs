@@ -27,25 +27,25 @@ pub struct PairHessian<V: Vector> {
 }
 
 impl<V: Vector> ClosestFeatures<V> {
-    /// The second derivatives of the signed distance by the poses of both bodies, each turned about a centre of the
-    /// caller's; `None` where there are no [`velocities`](Self::velocities).
+    /// The second derivatives of the signed distance by the poses of both bodies, each turned about a given centre;
+    /// `None` if there are no [`velocities`](Self::velocities).
     ///
     /// The first derivatives by the pose of `a` are the force `n` at the point `a`: `(n, (a − c) × n)`. As a coordinate
     /// `θ` of a pose moves the normal by `n′` and the point by `a′`, they change by
     ///
     /// > Q(θ) = (n′, (a − c) × n′ + (a′ − δ) × n),
     ///
-    /// with `δ` the translation if `θ` is one of `a` itself, which takes the centre `c` along; and those of `b`
-    /// likewise by the force `−n` at the point `b`. By the poses of both bodies that is the Hessian, by the pose of one
-    /// it is `(Q + Qᵀ)/2`. Along a coordinate `φ`, which moves the material point by `v` and turns the normal by `t = ω
-    /// × n`, it is `Q(θ)·φ = n′·v − (a′ − δ)·t`, of which both are across the normal.
+    /// where `δ` is the translation if `θ` is one of `a` itself, which moves the centre `c` too; and those of `b`
+    /// likewise by the force `−n` at the point `b`. By the poses of both bodies this is the Hessian, by the pose of one
+    /// it is `(Q + Qᵀ)/2`. Along a coordinate `φ`, which moves the material point by `v` and turns the normal by
+    /// `t = ω × n`, it is `Q(θ)·φ = n′·v − (a′ − δ)·t`, of which both are across the normal.
     ///
-    /// Where second derivatives jump, as of a ball exactly above the border of a face, there is [more than
-    /// one](Self::is_hessian_unique) Hessian, and this is that of the feature that holds the normal fastest, such as
+    /// If second derivatives jump, as for a ball exactly above the border of a face, there is [more than
+    /// one](Self::is_hessian_unique) Hessian. This one is that of the feature that holds the normal fastest, such as
     /// the face. The Hessian [says so](MotionHessian::is_unique).
     ///
-    /// It is as accurate as the normal and the points, times the condition of the bodies: what turning a needle would
-    /// do with the normal held is mostly taken back by the normal.
+    /// It is as accurate as the normal and the points, times the condition of the bodies, since most of the effect of
+    /// turning a needle with the normal held is cancelled by the turn of the normal.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -71,13 +71,13 @@ impl<V: Vector> ClosestFeatures<V> {
         Some(PairHessian { a: of(by_a.hessian::<V>(&of_a, 0)), b: of(by_b.hessian::<V>(&of_b, 1)), mixed: of(mixed) })
     }
 
-    /// The same by the pose of `a` alone.
+    /// The second derivatives by the pose of `a` alone.
     #[must_use]
     pub fn hessian_of_a(&self, center: V) -> Option<MotionHessian<V>> {
         self.hessian_of(0, center)
     }
 
-    /// The same by the pose of `b` alone.
+    /// The second derivatives by the pose of `b` alone.
     #[must_use]
     pub fn hessian_of_b(&self, center: V) -> Option<MotionHessian<V>> {
         self.hessian_of(1, center)

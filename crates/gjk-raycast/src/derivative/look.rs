@@ -14,7 +14,7 @@ use crate::unit::reciprocal_of_power;
 /// goes, in units of the square root of ε.
 const TURN: f64 = 16.0;
 
-/// By how much a support point may differ from where its curvature foretells it, as a part of how far that moves.
+/// By how much a support point may differ from where its curvature predicts it, as a part of how far that moves.
 const SURPRISE: f64 = 0.25;
 
 /// The curves at the ends of an edge are the same if they bend alike to this part of their sum.

@@ -1,4 +1,4 @@
-//! Whether an answer changes smoothly, and its one-sided derivatives where it does not.
+//! Whether an answer changes smoothly, and its one-sided derivatives if it does not.
 
 use convex_support::numerics::elementary::hypot;
 use convex_support::{Scalar, Vector};
@@ -25,10 +25,10 @@ pub enum Smoothness {
 }
 
 impl<V: Vector> ClosestFeatures<V> {
-    /// Whether the answer that the features were found from changes smoothly with the poses of both bodies: its first
-    /// derivatives are continuous, and its second ones exist where [they do not jump](Self::is_hessian_unique). If
-    /// features are parallel to within the error of the normal, or the answer is zero to within its own error, this is
-    /// [`Edge`](Smoothness::Edge), since rounding leaves it open.
+    /// Whether the answer that gave the features changes smoothly with the poses of both bodies: its first derivatives
+    /// are continuous, and its second ones exist unless [they jump](Self::is_hessian_unique). If features are parallel
+    /// to within the error of the normal, or the answer is zero to within its own error, this is
+    /// [`Edge`](Smoothness::Edge), since rounding leaves it undecided.
     ///
     /// A [`Distance`](crate::Distance) of bodies that touch, and the time of a hit at the very start, are at their
     /// floor and not smooth. The [`SignedDistance`](crate::SignedDistance) of the same bodies has no floor.
@@ -38,27 +38,27 @@ impl<V: Vector> ClosestFeatures<V> {
         if is_smooth { Smoothness::Smooth } else { Smoothness::Edge }
     }
 
-    /// Whether the second derivatives of the signed distance do not jump here. They do where the closest point leaves
-    /// an edge or a face, as of a ball that is exactly above the border of a face: over the face the distance has no
-    /// curvature, and beyond its border it is that from an edge. If a point is within the error of a border, rounding
-    /// leaves it open, and the answer is no.
+    /// Whether the second derivatives of the signed distance do not jump here. They jump where the closest point leaves
+    /// an edge or a face, as for a ball exactly above the border of a face: over the face the distance has no
+    /// curvature, and beyond its border it has that of the distance from an edge. If a point is within the error of a
+    /// border, rounding leaves this undecided, and the answer is `false`.
     ///
-    /// The gradient changes continuously all the same. The [Hessian](Self::hessian) is one of those on either side.
+    /// The gradient is continuous all the same. The [Hessian](Self::hessian) is one of those on either side.
     #[must_use]
     pub fn is_hessian_unique(&self) -> bool {
         self.are_points_unique() && separating(&self.outlines, self.slack()).is_empty()
     }
 
-    /// Whether there is only one pair of closest points. There are more where a face is parallel to a face or an edge,
-    /// or an edge to an edge.
+    /// Whether there is only one pair of closest points. There are more if a face is parallel to a face or an edge, or
+    /// an edge to an edge.
     #[must_use]
     pub fn are_points_unique(&self) -> bool {
         self.joint().is_some()
     }
 
     /// Whether there is only one normal. Then the answer is differentiable at least by translations. This is so
-    /// wherever the bodies are apart; it is not where a vertex touches a vertex or an edge, or where several ways out
-    /// are equally short.
+    /// wherever the bodies are apart. It is not so if a vertex touches a vertex or an edge, or several ways out are
+    /// equally short.
     #[must_use]
     pub fn is_normal_unique(&self) -> bool {
         let stiffness = self.stiffness();
@@ -89,18 +89,18 @@ impl<V: Vector> ClosestFeatures<V> {
         gap.abs() <= least && separating(&self.outlines, self.slack()).iter().any(is_soft)
     }
 
-    /// How fast the signed distance changes as the bodies begin to move: its one-sided derivative. It is exact also
-    /// where faces or edges are parallel. `None` where the normal is [not the only one](Self::is_normal_unique).
+    /// The speed at which the signed distance changes as the bodies begin to move: its one-sided derivative. It is
+    /// exact also if faces or edges are parallel. `None` if the normal is [not the only one](Self::is_normal_unique).
     ///
-    /// The signed distance falls as fast as the fastest of all closest points come nearer. With `M` the overlap of both
+    /// The signed distance falls as fast as the closest points that come nearer fastest. With `M` the overlap of both
     /// features in the plane across the normal `n` (Danskin, *The theory of max-min, with applications*, 1966),
     ///
     /// > ds/dt = min { n·(v_A(p) − v_B(p)) : p ∈ M },
     ///
     /// and since velocities are linear in `p`, the least is at a corner of `M`. In overlap the signed distance is the
     /// maximum over all normals of a minimum over points; by the duality of linear programs its derivative is the same
-    /// minimum. Discs are not replaced by polygons. If a face is known only [in part](Self::are_complete), corners that
-    /// are left out may come nearer faster: the answer is then an upper bound.
+    /// minimum. Discs are exact, not polygons. If a face is known only [in part](Self::are_complete), corners that are
+    /// left out may come nearer faster: the answer is then an upper bound.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::DVec2};
@@ -128,8 +128,8 @@ impl<V: Vector> ClosestFeatures<V> {
         Some(self.least(|p| self.normal.dot(motion_a.velocity(zero, p) - motion_b.velocity(zero, p))))
     }
 
-    /// How much later the bodies touch as their start poses begin to change, where they touch at a time while they
-    /// move: the one-sided derivative of the time, `min −n·(δa − δb)/(n·w)` over the overlap of both features.
+    /// The one-sided derivative of the time of contact by a motion of the start poses, for bodies that touch at a time
+    /// while they move: `min −n·(δa − δb)/(n·w)` over the overlap of both features.
     pub(super) fn delay(
         &self,
         time: V::Scalar,

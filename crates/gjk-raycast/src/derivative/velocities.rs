@@ -1,18 +1,18 @@
-//! How the closest points and the normal move with the bodies.
+//! The velocities of the closest points and the normal as the bodies move.
 //!
-//! At the closest points `a` and `b` the bodies support a plane across the normal `n`, and `a − b = s·n`. As they move,
-//! that stays so. With `v_A` and `v_B` the velocities of the material points there, `H_A` and `H_B` the Hessians of the
-//! support values along `∓n`, and `ω_A`, `ω_B` the turns, a support point moves with its body, and along it as the
-//! normal turns against the body:
+//! At the closest points `a` and `b` the bodies support a plane across the normal `n`, and `a − b = s·n`. This stays
+//! so as they move. With `v_A` and `v_B` the velocities of the material points there, `H_A` and `H_B` the Hessians of
+//! the support values along `∓n`, and `ω_A`, `ω_B` the turns, a support point moves with its body, and along it as
+//! the normal turns against the body:
 //!
 //! > a′ = v_A − H_A·(n′ − ω_A × n),   b′ = v_B + H_B·(n′ − ω_B × n),   a′ − b′ = s′·n + s·n′.
 //!
-//! Across the normal that is a linear system for `n′`,
+//! Across the normal this is a linear system for `n′`,
 //!
 //! > (H_A + H_B + s)·n′ = v_A − v_B + H_A·(ω_A × n) + H_B·(ω_B × n).
 //!
-//! On an edge of a body, along the unit vector `e`, the support point is free, and the normal stays across the edge in
-//! its stead:
+//! On an edge of a body, along the unit vector `e`, the support point is free, and in exchange the normal stays
+//! across the edge:
 //!
 //! > a′ = … + λ·e,   e·(n′ − ω_A × n) = 0.
 //!
@@ -43,10 +43,10 @@ pub struct ClosestVelocities<V: Vector> {
 }
 
 impl<V: Vector> ClosestFeatures<V> {
-    /// How fast the signed distance, the normal and the closest points change as the bodies begin to move.
+    /// The velocities of the signed distance, the normal and the closest points as the bodies begin to move.
     ///
-    /// `None` where the normal or the closest points are not [the only ones](Self::are_points_unique); and where the
-    /// curvature of the shapes is not known, which shows in support points nearby that are not where
+    /// `None` if the normal or the closest points are not [the only ones](Self::are_points_unique), or if the curvature
+    /// of the shapes is not known: then nearby support points are not where
     /// [`SupportMap::core_support_hessian`](convex_support::SupportMap::core_support_hessian) predicts them.
     ///
     /// ```
@@ -81,7 +81,7 @@ impl<V: Vector> ClosestFeatures<V> {
         })
     }
 
-    /// What answers how everything moves, if anything does.
+    /// The solver for the velocities, if they exist.
     pub(super) fn solver(&self) -> Option<Solver<'_, V>> {
         if !self.is_foretold || !self.is_normal_unique() {
             return None;
@@ -103,7 +103,7 @@ impl<V: Vector> ClosestFeatures<V> {
         Some(NewtonStep { turn: self.out_of_plane(change), points: [point_a, point_b], signed_distance })
     }
 
-    /// How far the closest points are from being opposite to each other, where the features leave them no choice.
+    /// How far the closest points are from being opposite to each other, if the features leave them no choice.
     pub(super) fn off(&self) -> V::Scalar {
         // Where numbers are not finite there are no corners.
         let [Some(a), Some(b)] = [0, 1].map(|i| self.outlines[i].corners.first()) else { return V::Scalar::ZERO };
@@ -137,7 +137,7 @@ pub(super) struct NewtonStep<V: Vector> {
     pub(super) signed_distance: V::Scalar,
 }
 
-/// Closest features, with what is solved for every motion.
+/// Closest features, with the system that is solved for every motion.
 pub(super) struct Solver<'f, V: Vector> {
     at: &'f ClosestFeatures<V>,
     stiffness: Symmetric<V::Scalar>,

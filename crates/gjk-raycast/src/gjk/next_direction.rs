@@ -148,7 +148,7 @@ const MODEL_ERROR: [f64; MAX_FAILURES] = [0.01, 0.2];
 /// A point contradicts the model where it takes away this much of the gain.
 const CONTRADICTION: f64 = 0.1;
 
-/// Two support points are of one smooth piece if the curvature at one foretells the other but for this part.
+/// Two support points are of one smooth piece if the curvature at one predicts the other but for this part.
 const SAME_PIECE: f64 = 0.25;
 
 /// The largest tangent of an angle to turn by.
@@ -203,7 +203,7 @@ impl<V: Vector> Newton<V> {
         piece: LastPiece<V>,
         model_error: V::Scalar,
     ) -> Option<V> {
-        // One piece: (H + ρ)·δ = −P, no farther than is sensible, and the gain of f foretold.
+        // One piece: (H + ρ)·δ = −P, no farther than is sensible, and the gain of f predicted.
         let h = piece.hessian.plus(state.length);
         let d = h.solve((-piece.aside, V::Scalar::ZERO));
         let size = dot(d, d).sqrt();
@@ -215,7 +215,7 @@ impl<V: Vector> Newton<V> {
         let gain = -(piece.aside * d.0) - dot(d, h.times(d)) * V::Scalar::from_f64(0.5);
         let to = piece.turned_by(d)?;
 
-        // The known point that lies farthest before the plane foretold.
+        // The known point that lies farthest before the plane predicted.
         let mut least = piece.reach + gain * V::Scalar::from_f64(1.0 - CONTRADICTION) - self.noise;
         let mut second = None;
         let corners = state.simplex.points().iter().zip(state.simplex.along());

@@ -1,4 +1,4 @@
-//! Where a ray, or what sinks like one, enters a half-space.
+//! Where a ray, or a body that moves straight, enters a half-space.
 
 use convex_support::numerics::bound::roundings;
 use convex_support::{Scalar, SupportMap, Vector};
@@ -15,8 +15,8 @@ use crate::{
 impl<V: Vector> HalfSpace<V> {
     /// The ray's first point in the half-space: where n·(s + λd) = offset, λ = (n·s − offset)/(−n·d).
     ///
-    /// Its beginning and end are treated as by [`ray_cast`](crate::ray_cast()). The height and the speed are each known
-    /// to a few roundings of themselves, and so is λ.
+    /// Its beginning and end are treated as by [`ray_cast`](crate::ray_cast()). The height and the speed are each
+    /// accurate to a few roundings of themselves, and so is λ.
     ///
     /// # Errors
     /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
@@ -52,10 +52,10 @@ impl<V: Vector> HalfSpace<V> {
         Ok(RayCast { outcome, lower, upper, status, iterations: 0 })
     }
 
-    /// When a moving shape, `a`, first touches the half-space, `b`: the ray of its lowest point.
+    /// The first contact of a moving shape, `a`, with the half-space, `b`: the ray of its lowest point.
     ///
     /// # Errors
-    /// As of [`linear_cast`](crate::linear_cast()).
+    /// Those of [`linear_cast`](crate::linear_cast()).
     pub fn linear_cast<A: SupportMap<Vector = V> + ?Sized>(
         &self,
         shape: &A,
@@ -84,7 +84,7 @@ impl<V: Vector> HalfSpace<V> {
     }
 }
 
-/// When what sinks comes to the plane: its time, and bounds on it, of what begins at zero.
+/// The time at which a sinking point comes to the plane, with bounds, counted from zero.
 pub(super) struct Landing<V: Vector> {
     pub(super) outcome: Outcome<V::Scalar, V>,
     pub(super) lower: V::Scalar,
@@ -93,8 +93,8 @@ pub(super) struct Landing<V: Vector> {
 }
 
 impl<V: Vector> Plane<V> {
-    /// When something at a height, which sinks at a speed, comes to the plane, if it does so until `end`. If it may be
-    /// in the half-space already, the answer is a hit at once. That hit is certain if it is inside by more than its
+    /// The landing of a point at a height, which sinks at a speed, if it lands before `end`. If it may be in the
+    /// half-space already, the answer is a hit at once. This hit is certain if the point is inside by more than its
     /// error, or certainly sinks.
     pub(super) fn crossing(&self, height: Level<V::Scalar>, sinking: Level<V::Scalar>, end: V::Scalar) -> Landing<V> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());

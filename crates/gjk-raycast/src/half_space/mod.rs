@@ -2,7 +2,7 @@
 //!
 //! A half-space has no support points, since it has no farthest point along most directions. But the point of a shape
 //! that is nearest to it, or deepest in it, is the support point of the shape along `−n`. So its queries are closed
-//! forms of how [high](plane) that point is and how fast it sinks.
+//! forms of the [height](plane) of this point and the speed at which it sinks.
 
 mod cast;
 mod plane;
@@ -63,7 +63,7 @@ impl<V: Vector> HalfSpace<V> {
         self.offset
     }
 
-    /// How far a shape, `a`, is from the half-space, `b`, or how deep in it.
+    /// The distance of a shape, `a`, from the half-space, `b`, or minus its depth if it overlaps.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::DVec3};
@@ -79,8 +79,8 @@ impl<V: Vector> HalfSpace<V> {
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
     ///
-    /// It is the height of the shape's lowest point. Its error is a few roundings of the height itself, and what the
-    /// shape says of its [rounding](SupportMap::rounding), however far along the plane the shape is.
+    /// It is the height of the shape's lowest point. Its error is a few roundings of the height itself, and the
+    /// [rounding](SupportMap::rounding) of the shape, however far along the plane the shape is.
     pub fn signed_distance<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A) -> SignedDistance<V> {
         let plane = self.plane();
         let Lowest { height, point } = plane.lowest(shape, Scalar::ZERO);
@@ -100,8 +100,8 @@ impl<V: Vector> HalfSpace<V> {
         }
     }
 
-    /// The distance from a shape, `a`, to the half-space, `b`; 0 if it reaches into the half-space, where
-    /// [`signed_distance`](Self::signed_distance) tells how deep.
+    /// The distance from a shape, `a`, to the half-space, `b`; 0 if they overlap, where
+    /// [`signed_distance`](Self::signed_distance) finds the depth.
     pub fn distance_from<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A) -> Distance<V> {
         let zero = V::Scalar::ZERO;
         let SignedDistance { signed_distance, lower, upper, normal, point_a, point_b, status, iterations, .. } =
@@ -142,8 +142,8 @@ impl<V: Vector> HalfSpace<V> {
         self.contact_of(shape, within, None)
     }
 
-    /// [`contact`](Self::contact) of a shape that was in contact before: of the points of the `last` contact those are
-    /// kept that still hold, as by [`contact_after`](crate::contact_after).
+    /// [`contact`](Self::contact) of a shape that was in contact before. It keeps those points of the `last` contact
+    /// that are still valid, as [`contact_after`](crate::contact_after) does.
     pub fn contact_after<A: SupportMap<Vector = V> + ?Sized>(
         &self,
         last: &Contact<V>,

@@ -1,4 +1,4 @@
-//! Linkages, paths and boxes of joint values that are none.
+//! Invalid linkages, paths and boxes of joint values.
 
 use core::error::Error;
 use core::fmt::{self, Display, Formatter};
@@ -11,14 +11,14 @@ use crate::RayCastError;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LinkageError {
-    /// A joint hangs from one that does not come before it, as in a circle of joints.
+    /// The parent of a joint does not come before it, as in a circle of joints.
     ParentNotBefore {
         /// The index of the joint.
         joint: usize,
-        /// The index that it names as its parent.
+        /// The index of its parent.
         parent: usize,
     },
-    /// The pose of a joint is none: a number is not finite, or its quaternion is zero.
+    /// The pose of a joint is invalid: a number is not finite, or its quaternion is zero.
     Pose {
         /// The index of the joint.
         joint: usize,
@@ -30,11 +30,11 @@ pub enum LinkageError {
         /// The index of the joint.
         joint: usize,
     },
-    /// A link hangs from a joint that is not there.
+    /// The joint of a link does not exist.
     NoSuchJoint {
         /// The index of the link.
         link: usize,
-        /// The index that it names as its joint.
+        /// The index of its joint.
         joint: usize,
     },
     /// A body of a link has no finite ball around it.
@@ -44,21 +44,21 @@ pub enum LinkageError {
         /// The index of the body in it.
         body: usize,
     },
-    /// A link, or a body of it, is asked about that is not there.
+    /// A link, or a body of it, does not exist.
     NoSuchBody {
         /// The index of the link.
         link: usize,
         /// The index of the body in it.
         body: usize,
     },
-    /// A pair names a link that is not there, or one link twice.
+    /// A pair names a link that does not exist, or one link twice.
     Pair {
         /// The index of the pair.
         pair: usize,
     },
     /// A path has no waypoint.
     EmptyPath,
-    /// A waypoint, or a box, has another number of values than there are joints that move.
+    /// The number of values of a waypoint, or of intervals of a box, is not the number of joints that move.
     Count {
         /// The index of the waypoint; 0 for a box.
         waypoint: usize,

@@ -1,4 +1,4 @@
-//! What a linkage is made of, and how a frame at the end of some joints moves, at one moment.
+//! The parts of a linkage, and the motion of a frame at the end of some joints, at one moment.
 
 use convex_support::numerics::elementary::sin_cos;
 use convex_support::{Matrix as _, Scalar, SupportMap, Vector};
@@ -7,10 +7,10 @@ use num_traits::Float as _;
 use super::frame::{LinkFrame, epsilons};
 use crate::{Pose, axial};
 
-/// A joint of a [`Linkage`](crate::Linkage): where its frame is in that of its parent, and how it moves from there.
+/// A joint of a [`Linkage`](crate::Linkage): its frame in that of its parent, and its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint<V: Vector> {
-    /// The index of the joint that carries it, which comes before it; `None` for the world.
+    /// The index of the joint that carries it, which has to be lower; `None` for the world.
     pub parent: Option<usize>,
     /// Its frame in its parent's, at the value 0.
     pub pose: Pose<V>,
@@ -18,15 +18,15 @@ pub struct Joint<V: Vector> {
     pub kind: JointKind<V>,
 }
 
-/// How a joint moves what it carries, in its own frame.
+/// How a joint moves the bodies that it carries, in its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointKind<V: Vector> {
     /// Not at all: it has no value.
     Fixed,
-    /// It turns about an axis through the origin by its value, in radians, after the right-hand rule. Of the axis only
-    /// the direction counts; in 2D it is a number, of which the sign does.
+    /// It turns by its value, in radians, after the right-hand rule, about an axis through the origin. Only the
+    /// direction of the axis counts; in 2D the axis is a number, and only its sign counts.
     Revolute(V::AngularVelocity),
-    /// It slides along an axis by its value. Of the axis only the direction counts.
+    /// It slides along an axis by its value. Only the direction of the axis counts.
     Prismatic(V),
 }
 
@@ -59,24 +59,24 @@ impl<V: Vector> Joint<V> {
     }
 }
 
-/// What a rotation about an axis is wrong by as an operator, in ε, beside what its angle is. The unit axis is wrong by
-/// 1.5, which counts twice. The term of the sine loses 3 and that of `1 − cos ≤ 2` twice 6; sine and cosine themselves
-/// 3, and the sum of the terms 5. The product with the rotation before it loses 4.5.
+/// A bound on the error of a rotation about an axis as an operator, in ε, besides the error of its angle. The unit
+/// axis is wrong by 1.5, which counts twice. The term of the sine loses 3 and that of `1 − cos ≤ 2` twice 6; sine and
+/// cosine themselves 3, and the sum of the terms 5. The product with the rotation before it loses 4.5.
 const OF_TURN: f64 = 31.0;
 
-/// The way from one moving joint to the next, and how that moves: `x ↦ fixed·motion(value)·x`.
+/// The step from one moving joint to the next, and its motion: `x ↦ fixed·motion(value)·x`.
 #[derive(Clone, Debug)]
 pub(super) struct JointStage<V: Vector> {
     /// Its frame in that of the moving joint before it, at the value 0.
     pub(super) fixed: LinkFrame<V>,
     /// How far its origin is from that of the joint before it.
     pub(super) arm: V::Scalar,
-    /// How far that is from the axis of the joint before it.
+    /// The distance of its origin from the axis of the joint before it.
     pub(super) off_axis: V::Scalar,
-    /// A unit vector in its own frame, which it turns about or slides along.
+    /// A unit vector in its own frame, along which it turns or slides.
     pub(super) axis: V,
-    /// Of a joint that turns: with `A` the matrix of the product with the axis, the rotation is `1 + sin·A + (1 −
-    /// cos)·A²` (Rodrigues), and these are its terms as the fixed rotation turns them.
+    /// For a joint that turns: with `A` the matrix of the product with the axis, the rotation is
+    /// `1 + sin·A + (1 − cos)·A²` (Rodrigues), and these are its terms as the fixed rotation turns them.
     turn: Option<[V::Matrix; 2]>,
     /// The place of its value among the joint values.
     pub(super) column: usize,
@@ -87,12 +87,12 @@ pub(super) struct JointStage<V: Vector> {
 pub(super) struct Value<S> {
     pub(super) value: S,
     pub(super) rate: S,
-    /// What rounding has done to the value.
+    /// A bound on the rounding of the value.
     pub(super) error: S,
 }
 
 /// A frame that moves, with the first two derivatives of its place by time, where all joint values change at constant
-/// rates. Only the frame has a bound on its error; derivatives are as they are computed.
+/// rates. Only the frame has a bound on its error; the derivatives have none.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moving<V: Vector> {
     pub(super) frame: LinkFrame<V>,
@@ -105,7 +105,7 @@ pub(super) struct Moving<V: Vector> {
 }
 
 impl<V: Vector> JointStage<V> {
-    /// The stage of a joint that is at `fixed`; `None` for one that does not move, or whose axis is none.
+    /// The stage of a joint at `fixed`; `None` for a joint that does not move, or has no axis.
     pub(super) fn new(fixed: LinkFrame<V>, kind: JointKind<V>, column: usize) -> Option<Self> {
         match kind {
             JointKind::Fixed => None,
@@ -130,13 +130,13 @@ impl<V: Vector> JointStage<V> {
         self.turn.is_some()
     }
 
-    /// Its axis and its origin, by its frame as it has moved.
+    /// Its axis and its origin, by its moved frame.
     pub(super) fn placed(&self, frame: &LinkFrame<V>) -> [V; 2] {
         let axis = if self.turns() { axial::turned(&frame.rotation, self.axis) } else { frame.rotation * self.axis };
         [axis, frame.translation]
     }
 
-    /// How fast a point goes along `n`, as its value changes, where its axis and origin are these.
+    /// The speed of a point along `n` as the value changes, with this axis and origin.
     pub(super) fn rise(&self, [axis, origin]: [V; 2], n: V, point: V) -> V::Scalar {
         n.dot(if self.turns() { axial::turning(axis, point - origin) } else { axis })
     }
@@ -164,8 +164,8 @@ impl<V: Vector> Moving<V> {
     /// The frame beyond a stage.
     ///
     /// Its origin is a point of this frame, or slides along it. It has the angular velocity `ω + w` with the joint's
-    /// own `w`, which this frame turns, so that its derivative is `ω′ + ω × w`; and what slides at `d` has the
-    /// acceleration `2ω × d` more than a point of this frame (Coriolis).
+    /// own `w`, which this frame turns, so that its derivative is `ω′ + ω × w`. If the joint slides at `d`, the
+    /// acceleration is larger by `2ω × d` than that of a point of this frame (Coriolis).
     #[inline]
     pub(super) fn beyond(&self, stage: &JointStage<V>, Value { value, rate, error }: Value<V::Scalar>) -> Self {
         let &JointStage { ref fixed, arm, axis, ref turn, .. } = stage;

@@ -1,20 +1,20 @@
-//! Whether two links ever meet, wherever their joints are.
+//! Whether two links ever meet, at any positions of their joints.
 //!
-//! A box of joint values is free if one plane shows it. In the middle of the box let the plane across `n` separate the
-//! first link's points `x` from the second link, in whose frame all is seen. If joint `j` changes by up to `δⱼ`, all at
-//! constant rates within a unit of time, a point sinks towards the plane by no more than
+//! A box of joint values is free if one plane proves it. In the middle of the box let the plane across `n` separate
+//! the first link's points `x` from the second link, in the frame of the second. If joint `j` changes by up to `δⱼ`,
+//! all at constant rates within a unit of time, a point sinks towards the plane by no more than
 //!
 //! > Σ δⱼ·|mⱼ·(x − cⱼ)| + a/2,   mⱼ = n × axisⱼ,
 //!
-//! of which the first is `n·ẋ` in the middle, with `cⱼ` the joint's origin, and `a` bounds the acceleration whatever
-//! the joint values. The least of `n·x` less that sum, over all points of the body, is a support value for each choice
-//! of signs: no point is counted with more than its own way, and those far from the plane may sink far.
+//! The first term is `n·ẋ` in the middle, with `cⱼ` the joint's origin, and `a` bounds the acceleration whatever the
+//! joint values. The least of `n·x` less this sum, over all points of the body, is a support value for each choice of
+//! signs: each point counts with its own path, and those far from the plane may sink far.
 //!
-//! A box that is not shown to be free is halved along the joint where that takes the most off the bound. Which box
-//! comes first decides how soon a pose is found where the links meet: mostly the one with the least gap in its middle,
-//! times the third power of the part that the gap is of what points may sink. Yet about a place where the links almost
-//! meet there may be tens of thousands of boxes that all seem near to contact. So every fourth time the largest box
-//! comes first, and no part of the whole has to wait until those are done.
+//! A box that is not proved free is halved along the joint where halving improves the bound most. The order of the
+//! boxes decides how soon a pose is found where the links meet. Mostly the next box is the one with the least gap in
+//! its middle, times the third power of the ratio of the gap to the most that points may sink. Yet about a place
+//! where the links almost meet there may be tens of thousands of boxes that all seem near to contact. So every fourth
+//! time the largest box comes first, and no part of the whole has to wait until those are done.
 
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
@@ -35,10 +35,10 @@ use crate::axial;
 use crate::ray::check_limits;
 use crate::{SignedDistanceOptions, signed_distance};
 
-/// Of more joints than this, the signs of each are chosen alone.
+/// If there are more joints than this, the sign of each is chosen alone.
 const MAX_SIGNS: usize = 5;
 
-/// Of so many parts that are halved, one is the largest that is open.
+/// One of so many parts that are halved is the largest one that is still undecided.
 const LARGEST_EVERY: usize = 4;
 
 /// The answer of [`Linkage::joint_box`].
@@ -47,7 +47,7 @@ const LARGEST_EVERY: usize = 4;
 pub struct JointBox<S> {
     /// Whether the links meet.
     pub outcome: JointBoxOutcome<S>,
-    /// The parts of the box that were looked at.
+    /// The number of parts of the box that were tested.
     pub boxes: usize,
 }
 
@@ -56,16 +56,16 @@ pub struct JointBox<S> {
 pub enum JointBoxOutcome<S> {
     /// They are farther apart than the target distance everywhere in the box. This is a proof.
     Never,
-    /// They are as near as that, for certain.
+    /// They are certainly no farther apart than the target distance in a pose.
     Meets {
-        /// At these joint values.
+        /// The joint values of the pose.
         values: Vec<S>,
-        /// The bodies of both that are.
+        /// The bodies of both links that meet.
         bodies: [usize; 2],
     },
-    /// Neither is known.
+    /// Neither is proved.
     Undecided {
-        /// The share of the box that is not known to be free.
+        /// The share of the box that is not proved free.
         share: S,
     },
 }
@@ -112,11 +112,11 @@ impl<S: SupportMap> Linkage<S> {
         self.joint_box_with(pair, joint_box, target_distance, max_boxes, |_| {})
     }
 
-    /// [`joint_box`](Self::joint_box), showing an observer the parts of the box in which two bodies are proved to be
-    /// apart. Where the answer is [`Never`](JointBoxOutcome::Never), they cover the box for each two bodies.
+    /// [`joint_box`](Self::joint_box) with an observer that sees the parts of the box in which two bodies are proved to
+    /// be apart. If the answer is [`Never`](JointBoxOutcome::Never), they cover the box for each two bodies.
     ///
     /// # Errors
-    /// As of [`joint_box`](Self::joint_box).
+    /// Those of [`joint_box`](Self::joint_box).
     pub fn joint_box_with(
         &self,
         pair: [usize; 2],
@@ -183,21 +183,21 @@ struct BoxPart<S> {
     share: S,
 }
 
-/// What is known of a part.
+/// The state of a part.
 enum BoxState<V: Vector> {
     /// A plane across this separates the bodies in all of it.
     Free {
         normal: V,
     },
     Meets,
-    /// A number that orders parts, of which the least is to be halved first, and the value to halve.
+    /// A number that orders parts, the least of which is to be halved first, and the value to halve.
     Open {
         after: V::Scalar,
         column: Option<usize>,
     },
 }
 
-/// Looks at two bodies in a part of the box, where a route leads from the second's link to the first's.
+/// Tests two bodies in a part of the box, with a route from the second's link to the first's.
 fn look<V: Vector, S: SupportMap<Vector = V>>(
     route: &Route<V>,
     target: V::Scalar,
@@ -271,8 +271,8 @@ fn look<V: Vector, S: SupportMap<Vector = V>>(
     BoxState::Open { after: gap * part * part * part, column: best.map(|(_, column)| column) }
 }
 
-/// The least of `n·x − Σ |change·x − offset|` over the points of a body, from below, by how far it is along a direction
-/// at least: the least over all signs of the changes, or where they are many the sum of the least of each.
+/// A lower bound of `n·x − Σ |change·x − offset|` over the points of a body, given its least height along a
+/// direction: the least over all signs of the changes, or if they are many the sum of the least of each.
 fn least_height<V: Vector>(height: &impl Fn(V) -> V::Scalar, n: V, changes: &[(V, V::Scalar)]) -> V::Scalar {
     let [rest @ .., (change, offset)] = changes else { return height(n) };
     if changes.len() > MAX_SIGNS {

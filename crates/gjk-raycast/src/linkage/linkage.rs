@@ -16,7 +16,7 @@ use super::link_motion::{PathEdge, Route};
 use super::result::{Met, PathContact};
 use crate::{Impact, axial};
 
-/// A robot: links, each of some bodies, that joints carry, in a tree.
+/// A robot: links, each of some bodies, carried by joints in a tree.
 ///
 /// ```
 /// use convex_support::{Ball, Posed, Rounded, Segment, glam::DVec3};
@@ -52,23 +52,23 @@ use crate::{Impact, axial};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// All bodies are of one type, as in a [`Scene`](crate::Scene). Links are not asked about one another, but for the
-/// [pairs](Self::with_pairs) that are named. Two robots that both move are one linkage of two trees, and pairs of links
-/// of both.
+/// All bodies are of one type, as in a [`Scene`](crate::Scene). Links are tested against one another only in the
+/// [pairs](Self::with_pairs) that you name. Two robots that both move are one linkage of two trees, with pairs of
+/// links of both.
 #[derive(Clone, Debug)]
 pub struct Linkage<S: SupportMap> {
     pub(super) skeleton: Skeleton<S::Vector>,
-    /// Those of each link.
+    /// The bodies of each link.
     pub(super) bodies: Vec<Vec<S>>,
 }
 
-/// What of a linkage does not depend on its shapes.
+/// The part of a linkage that does not depend on its shapes.
 #[derive(Clone, Debug)]
 pub(super) struct Skeleton<V: Vector> {
-    /// The joints that move, each after the one that carries it, which is named beside it.
+    /// The joints that move, each after the one that carries it, whose index is beside it.
     pub(super) stages: Vec<(Option<usize>, JointStage<V>)>,
     pub(super) links: Vec<LinkBalls<V>>,
-    /// Each link as the world sees it, and after them the pairs that are asked about.
+    /// Each link in the frame of the world, and after them the pairs to be tested.
     pub(super) views: Vec<LinkView<V>>,
 }
 
@@ -81,7 +81,7 @@ pub(super) struct LinkBalls<V: Vector> {
     pub(super) all: BoundingSphere<V>,
 }
 
-/// A link as it is seen from another one, or from the world, and the way from there.
+/// A link in the frame of another one, or of the world, and the route from there.
 #[derive(Clone, Debug)]
 pub(super) struct LinkView<V: Vector> {
     pub(super) link: usize,
@@ -93,7 +93,7 @@ impl<S: SupportMap> Linkage<S> {
     /// The linkage of these joints, each after its parent, and links.
     ///
     /// # Errors
-    /// [`LinkageError`] with the index of the first joint, link or body that is none.
+    /// [`LinkageError`] with the index of the first joint, link or body that is not valid.
     pub fn new(
         joints: impl IntoIterator<Item = Joint<S::Vector>>,
         links: impl IntoIterator<Item = Link<S>>,
@@ -137,8 +137,8 @@ impl<S: SupportMap> Linkage<S> {
         Ok(Self { skeleton: Skeleton { stages, links: balls, views }, bodies: all })
     }
 
-    /// The same linkage, in which the links of these pairs are asked about one another, by their indices: those that
-    /// may meet. Neighbours overlap in most robots, and should be left out.
+    /// The linkage with pairs of links, by their indices, to be tested against one another: those that may meet.
+    /// Neighbours overlap in most robots, and should be left out.
     ///
     /// # Errors
     /// [`LinkageError::Pair`] for the first pair that is not of two links.
@@ -151,7 +151,7 @@ impl<S: SupportMap> Linkage<S> {
         Ok(self)
     }
 
-    /// The number of joints that move, which is that of the values of a waypoint.
+    /// The number of joints that move, which is the number of values of a waypoint.
     #[must_use]
     pub fn values(&self) -> usize {
         self.skeleton.stages.len()
@@ -163,7 +163,7 @@ impl<S: SupportMap> Linkage<S> {
         self.bodies.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no links.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()
@@ -175,7 +175,7 @@ impl<S: SupportMap> Linkage<S> {
         self.bodies.get(link).map_or(&[], |bodies| bodies)
     }
 
-    /// A body of a link where joint values have it, to rounding.
+    /// A body of a link, posed by joint values, to rounding.
     ///
     /// # Errors
     /// [`LinkageError`] if there is no such body, or the values are not as many finite numbers as there are
@@ -189,18 +189,18 @@ impl<S: SupportMap> Linkage<S> {
         placed.map_err(|_| LinkageError::BodyNotFinite { link, body })
     }
 
-    /// How far any point of a link goes at most, where joint values change from the one to the other: in any direction,
-    /// or along a unit vector, and then negative where all points certainly go the other way. So a link stays farther
-    /// from what is at rest than a margin as long as that is less than the [room](crate::FreeStep) of its distance,
-    /// whichever way the joints have taken in between. Against the normal of a distance it is how much nearer the link
-    /// may come to that one.
+    /// A bound on how far any point of a link goes, if joint values change from `from` to `to`: in any direction, or
+    /// along a unit vector. Along a vector it is negative if all points certainly go the other way. A link stays
+    /// farther from a body at rest than a margin as long as this bound is less than the [room](crate::FreeStep) of its
+    /// distance, for any path of the joints in between. Against the normal of a distance it bounds how much nearer the
+    /// link may come to that body.
     ///
-    /// If the joints go straight, within a unit of time, it is no more than the highest speed, nor than that at first
-    /// and half of the highest acceleration. At first the points of a body, whose support function is `h` about an
+    /// If the joints go straight, within a unit of time, it is no more than the highest speed, nor than the first speed
+    /// plus half of the highest acceleration. At first the points of a body, whose support function is `h` about an
     /// origin of the velocity `v`, go along `n` by `n·v + h(n × ω)`.
     ///
     /// # Errors
-    /// As of [`placed`](Self::placed).
+    /// Those of [`placed`](Self::placed).
     pub fn way(
         &self,
         link: usize,
@@ -228,13 +228,14 @@ impl<S: SupportMap> Linkage<S> {
     }
 
     /// The derivatives of the time of a first contact on this path by the joint values at both ends of its edge, for
-    /// each joint that moves. `None` where links overlap as the path begins, or touch and do not approach one another.
+    /// each joint that moves. `None` if links overlap as the path begins, or touch and do not approach one another.
     ///
-    /// With `n` the normal and `p` the point of contact, joint `j` lifts the link off what it meets by `gⱼ = n·∂p/∂qⱼ`.
-    /// The gap closes at the rate `−Σ gⱼ·q̇ⱼ`, so that the time changes by `Σ gⱼ·δqⱼ` over that, and a change of the
-    /// value at the end of the edge changes that at the time `t` by a share of `t`, one at its beginning by `1 − t`.
+    /// With `n` the normal and `p` the point of contact, joint `j` lifts the link off the other body by
+    /// `gⱼ = n·∂p/∂qⱼ`. The gap closes at the rate `−Σ gⱼ·q̇ⱼ`, so that the time changes by `Σ gⱼ·δqⱼ` over that rate.
+    /// A change of the value at the end of the edge changes the value at the time `t` by a share of `t`, one at its
+    /// beginning by `1 − t`.
     ///
-    /// Where there is only one point of contact they are derivatives, and elsewhere one-sided derivatives.
+    /// If there is only one point of contact they are derivatives, otherwise one-sided derivatives.
     ///
     /// ```
     /// use convex_support::{Ball, glam::DVec2};
@@ -295,7 +296,7 @@ impl<S: SupportMap> Linkage<S> {
 }
 
 impl<V: Vector> Skeleton<V> {
-    /// The way from the second to the first of two links, if there are such.
+    /// The route from the second to the first of two links, if both exist.
     pub(super) fn between(&self, [a, b]: [usize; 2]) -> Option<Route<V>> {
         let count = self.links.len();
         (a != b && a.max(b) < count).then(|| Route::between(&self.views[b].route, &self.views[a].route))

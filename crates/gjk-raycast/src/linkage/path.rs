@@ -1,4 +1,4 @@
-//! Whether a linkage meets anything along a path.
+//! Whether a linkage touches anything along a path.
 
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
@@ -12,20 +12,20 @@ use crate::motion::checked;
 use crate::{Body, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene, StartInContact};
 
 impl<S: SupportMap> Linkage<S> {
-    /// Whether the way along waypoints is free, among the bodies of a scene at rest, and of the
-    /// [pairs](Self::with_pairs) of its own links.
+    /// Whether the path along waypoints is free, among the bodies of a scene at rest, and of the
+    /// [pairs](Self::with_pairs) of its own links, or its first contact.
     ///
     /// A waypoint has a value for each joint that moves, in their order. Between two waypoints all joints move at
     /// constant rates, in one unit of time. A path of one waypoint is the pose.
     ///
-    /// Along each edge, what comes near is found first. What is near is cast, earliest first, and only until the first
-    /// contact so far: [`motion_cast`](crate::motion_cast()) proves it free at all times, or brackets its first
-    /// contact. Bounds account for the rounding of the joints' poses too, so that a free path is a proof about
-    /// the linkage as it is given by its numbers.
+    /// Along each edge, bodies that come near are found first. These are cast, earliest first, and only until the first
+    /// contact so far: [`motion_cast`](crate::motion_cast()) proves them free at all times, or brackets the first
+    /// contact. Bounds account for the rounding of the joints' poses too, so that a free path is a proof about the
+    /// linkage that the given numbers define.
     ///
-    /// The options are those of the casts, but that `max_time` is a time of the path, each edge of which takes 1, and
-    /// `max_iterations` counts for each body of a link and each that is near it. A start in contact is a contact,
-    /// whatever they say of it, and their axis is not looked at.
+    /// The options are those of the casts, with two differences: `max_time` is a time of the path, each edge of which
+    /// takes 1, and `max_iterations` counts for each body of a link and each body near it. A start in contact is always
+    /// a contact, and `start_in_contact` and `axis` have no effect.
     ///
     /// # Errors
     /// [`LinkageError`] if the path is empty, a waypoint has another number of values than [`values`](Self::values), a
@@ -40,13 +40,14 @@ impl<S: SupportMap> Linkage<S> {
         self.watched_path(waypoints, scene, options, workspace, None)
     }
 
-    /// [`path`](Self::path), showing an observer what proves it, bodies and intervals in no particular order. Those of
-    /// a free path cover all of its edges, for each body of a link and each of the scene, and each pair that is asked
-    /// about; those of another come up to where it is said to be free. It takes longer: all of these are cast, however
-    /// far away, and along the whole edge, so that brackets may differ from those of [`path`](Self::path) by rounding.
+    /// [`path`](Self::path) with an observer that sees its proof, bodies and intervals in no particular order. For a
+    /// free path the intervals cover all of its edges, for each body of a link and each body of the scene, and each
+    /// pair in question; for another path they come up to where it is said to be free. It takes longer: all of these
+    /// are cast, however far away, and along the whole edge, so that brackets may differ from those of
+    /// [`path`](Self::path) by rounding.
     ///
     /// # Errors
-    /// As of [`path`](Self::path).
+    /// Those of [`path`](Self::path).
     pub fn path_with<O: SupportMap<Vector = S::Vector>, W: AsRef<[ScalarOf<S>]>>(
         &self,
         waypoints: &[W],
@@ -58,7 +59,7 @@ impl<S: SupportMap> Linkage<S> {
         self.watched_path(waypoints, scene, options, workspace, Some(&mut observer))
     }
 
-    /// [`path`](Self::path) of many paths on all threads, such as the edges of a roadmap; answers in the same order.
+    /// [`path`](Self::path) for many paths on all threads, such as the edges of a roadmap; answers in the same order.
     #[cfg(feature = "rayon")]
     pub fn par_paths<O: SupportMap<Vector = S::Vector> + Sync, P: AsRef<[W]> + Sync, W: AsRef<[ScalarOf<S>]>>(
         &self,
@@ -129,7 +130,7 @@ impl<S: SupportMap> Linkage<S> {
         Ok(Path { first: None, work })
     }
 
-    /// Casts a body at what may come near it.
+    /// Casts a body against the bodies that may come near it.
     fn cast<O: SupportMap<Vector = S::Vector>>(
         &self,
         near: &Near<ScalarOf<S>>,
@@ -185,8 +186,8 @@ struct First<V: Vector> {
 }
 
 impl<V: Vector> First<V> {
-    /// Takes the cast of a body from a time on. The first contact of all is bracketed by the least bounds of each, and
-    /// named is the one that is certain first, which is the one that is met at the upper bound.
+    /// Takes the cast of a body from a time on. The first contact of all is bracketed by the least bounds of each. It
+    /// names the body that is certain first, which is the one met at the upper bound.
     fn take(&mut self, mut next: PathContact<V>, from: V::Scalar) {
         // The sum with a start is rounded.
         let room = if from == V::Scalar::ZERO { from } else { V::Scalar::EPSILON };
@@ -220,8 +221,8 @@ impl<V: Vector> First<V> {
         contact.into_iter().chain(stop).fold(duration, Float::min)
     }
 
-    /// What is known at the end of the edge before, where that is [open](is_open_at_end) and this edge follows: where
-    /// this one begins in contact, or comes to one at once, that is the contact, at the waypoint.
+    /// The contact at the end of the last edge, if that is [open](is_open_at_end) and this edge follows: if this edge
+    /// begins in contact, or comes to a contact at once, the contact is certain, at the waypoint.
     fn goes_on(&self, open: PathContact<V>) -> PathContact<V> {
         let is_at_once = |cast: &MotionCast<V>| cast.is_certain() && cast.upper < at_waypoint();
         let Some(mut next) = self.of_both().filter(|next| is_at_once(&next.cast)) else { return open };
@@ -233,20 +234,20 @@ impl<V: Vector> First<V> {
         next
     }
 
-    /// What comes first; `None` if the edge is free.
+    /// The first contact of both; `None` if the edge is free.
     fn of_both(&self) -> Option<PathContact<V>> {
         let is_first = |stop: &PathContact<V>| self.contact.is_none_or(|it| stop.cast.lower < it.cast.lower);
         self.stop.filter(is_first).or(self.contact)
     }
 }
 
-/// How near the end of an edge, or the beginning of the next, is at the waypoint: a contact that is come to from the
-/// side is known to the root of what a distance is.
+/// How near the waypoint the end of an edge, or the beginning of the next, has to be. The time of a contact that is
+/// approached from the side is known only to the root of the error of a distance.
 fn at_waypoint<S: Scalar>() -> S {
     S::EPSILON.sqrt() * S::from_f64(16.0)
 }
 
-/// Whether something may be met at the end of an edge, and not before it.
+/// Whether there may be a contact at the end of an edge, and none before it.
 fn is_open_at_end<V: Vector>(PathContact { cast, .. }: &PathContact<V>) -> bool {
     !cast.is_certain() && V::Scalar::ONE - cast.lower < at_waypoint()
 }

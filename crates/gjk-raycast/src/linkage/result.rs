@@ -1,5 +1,5 @@
-//! What is answered of a path, and what proves that it, or a box of joint values, is free: shown to who wants to see
-//! it, and kept by nobody.
+//! The answer about a path, and the parts of a proof that it, or a box of joint values, is free. Observers see the
+//! parts; nothing keeps them.
 
 use convex_support::{Scalar as _, Vector};
 
@@ -9,14 +9,14 @@ use crate::{Impact, MotionCast, MotionIterate, Outcome};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Path<V: Vector> {
-    /// What is met first, or may be, where its cast is undecided: rounding decides, or a limit was reached. `None`
-    /// where nothing is met, nor nearer than the target distance, at any time of the whole path. This is a proof.
+    /// The first contact, or a possible one if its cast is undecided: rounding decides, or a limit was reached. `None`
+    /// if no body comes as near as the target distance at any time of the whole path. This is a proof.
     pub first: Option<PathContact<V>>,
-    /// What was done for it.
+    /// The work done.
     pub work: PathWork,
 }
 
-/// Where a body of a link meets something, or may do so.
+/// A contact of a body of a link, or a possible one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathContact<V: Vector> {
     /// The edge, counted from 0: from the waypoint of this index to the next one. The edges before it are free.
@@ -25,16 +25,16 @@ pub struct PathContact<V: Vector> {
     pub link: usize,
     /// The body of the link.
     pub body: usize,
-    /// What it meets.
+    /// The body that it meets.
     pub met: Met,
-    /// Their cast, with the normal out of what is met. Times are those of the edge, which begins at 0 and ends at 1,
-    /// and the bounds are those of all bodies: nothing is met before the lower one, and something, which may be another
-    /// body, at the upper one. That is more than 1 for a contact at the end of the edge that the next edge has shown:
-    /// so much after that one's beginning.
+    /// Their cast, with the normal out of the other body. Times are those of the edge, which begins at 0 and ends at 1,
+    /// and the bounds are those of all bodies: there is no contact before the lower one, and a contact, perhaps of
+    /// another body, at the upper one. The upper bound is more than 1 if the next edge has proved a contact at the end
+    /// of this one, by its time in the next edge.
     pub cast: MotionCast<V>,
 }
 
-/// What a link meets.
+/// The body that a link meets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Met {
     /// A body of the scene, by its index.
@@ -43,15 +43,15 @@ pub enum Met {
     Link {
         /// The index of the link.
         link: usize,
-        /// That of its body.
+        /// The index of its body.
         body: usize,
     },
 }
 
-/// What was done for an answer: a report that need not be looked at.
+/// The work done for an answer. It may be ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PathWork {
-    /// The parts of edges at whose middle the joints were placed, to see what is near.
+    /// The parts of edges at whose middle the joints were placed, to find near bodies.
     pub parts: usize,
     /// The [motion casts](crate::motion_cast()) of a body of a link against another.
     pub casts: usize,
@@ -74,14 +74,15 @@ impl<V: Vector> Path<V> {
 /// A body of a link that is proved to be apart from another, for a part of an edge.
 ///
 /// A plane between them proves it: one across the first normal, or across the second, or one whose normal goes
-/// straight, at a constant rate, from the one to the other. At all times of the interval the bodies are apart along one
-/// of these by more than the target distance. Two bodies are free along an edge if such intervals cover it. That can be
-/// checked with the positions of the joints alone, and a bound on how far points leave the chords of their ways.
+/// straight, at a constant rate, from the one to the other. At all times of the interval the bodies are apart along
+/// one of these by more than the target distance. Two bodies are free along an edge if such intervals cover it. This
+/// can be checked with the positions of the joints alone, and a bound on how far points leave the chords of their
+/// paths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeInterval<V: Vector> {
     /// The edge, counted from 0.
     pub edge: usize,
-    /// The times in it from which and to which they are apart.
+    /// The beginning of the interval.
     pub from: V::Scalar,
     /// The end.
     pub to: V::Scalar,
@@ -89,7 +90,7 @@ pub struct FreeInterval<V: Vector> {
     pub link: usize,
     /// Its body.
     pub body: usize,
-    /// What it does not meet.
+    /// The body that it does not meet.
     pub met: Met,
     /// The normals at the ends, towards the link, of length 1 to rounding: in the world, or for a body of another link
     /// in the frame of that one's joint.
@@ -108,8 +109,8 @@ pub struct FreeBox<'b, V: Vector> {
     pub normal: V,
 }
 
-/// What a cast has proved so far, by the times that it has looked at: each that its lower bound has come to is the end
-/// of an interval from the one before. Both are remembered with the normals there: the last end, and the last look.
+/// The intervals that a cast has proved so far. Each time to which its lower bound has come ends an interval from the
+/// one before. The last end and the last time examined are kept, with their normals.
 pub(super) struct ProvedSteps<V: Vector> {
     last: Option<(V::Scalar, V)>,
     seen: Option<(V::Scalar, V)>,
@@ -131,7 +132,7 @@ impl<V: Vector> ProvedSteps<V> {
         self.last = Some(there);
     }
 
-    /// What the answer says beyond that: a miss, along one plane, from the last time on.
+    /// The interval that the answer adds: a miss, along one plane, from the last time on.
     pub(super) fn end(mut self, cast: &MotionCast<V>, mut show: impl FnMut([V::Scalar; 2], [V; 2])) {
         self.come_to(cast.lower, &mut show);
         let from = self.last.map_or(V::Scalar::ZERO, |(time, _)| time);

@@ -1,5 +1,5 @@
-//! The motion of what several joints carry, such as a link of a robot, and bounds on how fast, and how unevenly, its
-//! points may move, whatever the joint values are.
+//! The motion of a body that several joints carry, such as a link of a robot, and bounds on the speed and unevenness
+//! of its points, for any joint values.
 
 use convex_support::{BoundingSphere, Matrix, Scalar, Vector};
 
@@ -10,17 +10,17 @@ use crate::axial;
 /// The motion of a body at the end of a chain of joints, each of which moves at a constant rate: a link of a robot
 /// along a straight edge in joint space.
 ///
-/// Each joint is given by the motion that it alone would give to the links beyond it, starting from where they are in
-/// the world at time 0. For a revolute joint this is the [rotation](RigidMotion::rotation) at its rate about a point of
-/// its axis, for a prismatic joint the [translation](RigidMotion::translation), and for a helical joint a screw.
-/// Together they move the body by
+/// Each joint is given by the motion that it alone would give to the links beyond it, from their places in the world
+/// at time 0. For a revolute joint this is the [rotation](RigidMotion::rotation) at its rate about a point of its
+/// axis, for a prismatic joint the [translation](RigidMotion::translation), and for a helical joint a screw. Together
+/// they move the body by
 ///
 /// > x(t) = J₁(t)∘J₂(t)∘…∘Jₙ(t) (x),
 ///
 /// the first joint being the one nearest to the base (Brockett's product of exponentials, Murray, Li and Sastry, *A
 /// Mathematical Introduction to Robotic Manipulation*, 1994, section 3.2). If the base moves too, its motion is one
-/// more joint in front of the others. The joints are borrowed, so that the links of one arm can share them: link `k` is
-/// carried by the first `k` joints.
+/// more joint in front of the others. The joints are borrowed, so that the links of one arm can share them: the first
+/// `k` joints carry link `k`.
 ///
 /// ```
 /// use convex_support::{Ball, Posed, Rounded, Segment, glam::DVec3};

@@ -49,7 +49,7 @@ pub(super) struct Search<'p, V: Vector> {
     pub(super) sped_up: V::Scalar,
     /// The bound `M` to be expected of a step like it; at the start, along a plane that does not turn.
     pub(super) acceleration: V::Scalar,
-    /// Whether that foretells the next step: the same points were the closest ones all the way.
+    /// Whether that predicts the next step: the same points were the closest ones all the way.
     pub(super) is_smooth: bool,
     /// A later time at which they are apart, though they may not be in between.
     pub(super) ahead: Option<Instant<V>>,

@@ -6,7 +6,7 @@ use num_traits::Float as _;
 use super::trajectory::TurningPlane;
 use crate::unit::length_bound;
 
-/// A step may change the distance by what the closing speeds do not foretell, but for this part of what they have
+/// A step may change the distance by what the closing speeds do not predict, but for this part of what they have
 /// changed.
 const KINK: f64 = 0.1;
 

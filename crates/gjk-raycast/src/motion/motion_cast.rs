@@ -1,4 +1,4 @@
-//! When two bodies meet that move and turn, and what can be asked of that.
+//! The first contact of two bodies that move and turn, and its options.
 
 use convex_support::{AngularVelocity, Core, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
@@ -20,7 +20,7 @@ use crate::separation::Closer;
 use crate::shape::Shape;
 use crate::{LinearCast, LinearCastOptions, Motion, MotionCast, StartInContact, WarmStart};
 
-/// Times to look at, after which to give up. A contact takes about ten and each turn near another body about as many;
+/// Times to examine after which to give up. A contact takes about ten, and each turn near another body about as many;
 /// bodies that spin for long very near one another take the most.
 const MAX_ITERATIONS: usize = 10_000;
 
@@ -31,8 +31,8 @@ const MAX_ITERATIONS: usize = 10_000;
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct MotionCastOptions<V: Vector> {
     /// The end of the motion; it belongs to the motion. A negative value is taken for zero. Default: infinity. Set an
-    /// end if a body spins: beside another body, no finite search can prove that it never touches it, and the answer is
-    /// undecided after [`max_iterations`](Self::max_iterations).
+    /// end if a body spins: no finite search can prove that a spinning body never touches another one, and the answer
+    /// is undecided after [`max_iterations`](Self::max_iterations).
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_time: V::Scalar,
     /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
@@ -41,11 +41,11 @@ pub struct MotionCastOptions<V: Vector> {
     /// The distance at which bodies count as touching: the cast stops that far from contact. A negative value is taken
     /// for zero. Default: 0.
     pub target_distance: V::Scalar,
-    /// What to answer where the bodies touch at the start. Default: [`StartInContact::Report`].
+    /// What to answer if the bodies touch at the start. Default: [`StartInContact::Report`].
     pub start_in_contact: StartInContact,
     /// A first guess of the direction from `b` to `a` at the start, such as the axis of the last miss. Default: none.
     pub axis: Option<V>,
-    /// The number of times to look at, after which to give up; each takes a few support points, which
+    /// The number of times to examine, after which to give up; each takes a few support points, which
     /// [`MotionCast::iterations`](crate::MotionCast::iterations) counts. Default: 10 000.
     pub max_iterations: usize,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -59,14 +59,14 @@ impl<V: Vector> MotionCastOptions<V> {
         Self { extra: FullMotion::named(), ..Self::lean() }
     }
 
-    /// The default options, naming no more machine code than GJK, closed forms, and what was closest a moment ago: a
+    /// The default options, with no machine code besides GJK, closed forms, and the closest points of the last time: a
     /// program in which all options are lean has a third of the code for motion casts.
     ///
-    /// What is left out is the shortest way out of an overlap, the facets of two boxes, the proof that bodies without
-    /// an inside have passed through one another, and the linear cast, so that motions that do not turn are searched
-    /// like those that do. The search takes more support points, the bracket may be wider, and a contact that is not
-    /// certain, or a graze, may be undecided where the default options know. So is, with
-    /// [`StartInContact::IfDeeper`], a start that may be in contact.
+    /// The search then does without the shortest way out of an overlap, the facets of two boxes, the proof that bodies
+    /// without an inside have passed through one another, and the linear cast, so that motions that do not turn are
+    /// searched like those that do. It takes more support points, the bracket may be wider, and a contact that is not
+    /// certain, or a graze, may be undecided where the default options decide. With [`StartInContact::IfDeeper`], a
+    /// start that may be in contact may be undecided too.
     #[must_use]
     pub fn lean() -> Self {
         Self {
@@ -85,24 +85,24 @@ impl<V: Vector> MotionCastOptions<V> {
 
 new_by_default!(MotionCastOptions);
 
-/// What an observer of a motion cast is shown of every time that is looked at.
+/// The state of a motion cast that an observer sees at every time examined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionIterate<V: Vector> {
     /// Counts from 0.
     pub iteration: usize,
-    /// The time looked at.
+    /// The time examined.
     pub time: V::Scalar,
-    /// By how much a plane certainly separates the bodies then; not positive where none is known.
+    /// The certain distance of a separating plane between the bodies then; not positive if none is known.
     pub gap: V::Scalar,
     /// The unit normal of that plane, from `b` to `a`.
     pub normal: V,
     /// The bodies have no point in common up to this time.
     pub lower: V::Scalar,
-    /// The bodies have a point in common at this time; infinite where none is known.
+    /// The bodies have a point in common at this time; infinite if none is known.
     pub upper: V::Scalar,
 }
 
-/// When two moving bodies first touch, and where.
+/// The first contact of two moving bodies, which may turn: its time, point and normal.
 ///
 /// ```
 /// use convex_support::{Ball, Capsule, Posed, glam::DVec3};
@@ -125,15 +125,15 @@ pub struct MotionIterate<V: Vector> {
 ///
 /// The motions are [`RigidMotion`]s, [`ChainMotion`](crate::ChainMotion)s or any other [`Trajectory`]; a body at rest
 /// has the motion `RigidMotion::default()`. Up to `lower` the bodies are proved to be apart at all times, not only at
-/// those looked at; by `upper` they have met. A miss is proved for the whole motion. Where the bodies graze one
-/// another, so that rounding decides, the answer is [`Outcome::Undecided`](crate::Outcome::Undecided), and `lower` is
-/// the time of the graze.
+/// those examined; by `upper` they have met. A miss is proved for the whole motion. If the bodies graze one another,
+/// so that rounding decides, the answer is [`Outcome::Undecided`](crate::Outcome::Undecided), and `lower` is the time
+/// of the graze.
 ///
 /// A start in contact is a hit at time 0, whatever the motion. With
-/// [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper) it is none, but that the bodies get deeper than they
-/// began, or touch again after they were apart: to step a world from contact to contact.
+/// [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper) the hit is the time from which the bodies get deeper
+/// than they began, or touch again after they were apart: this steps a world from contact to contact.
 ///
-/// Where neither body turns, the answer is that of [`linear_cast`](crate::linear_cast).
+/// If neither body turns, the answer is that of [`linear_cast`](crate::linear_cast).
 ///
 /// # Errors
 /// [`RayCastError::NonFinite`] if a number of a [`RigidMotion`] is not finite, the target distance is NaN or
@@ -152,10 +152,10 @@ where
     motion_cast_with(a, motion_a, b, motion_b, options, |_| {})
 }
 
-/// [`motion_cast`], showing an observer every time that is looked at. Where nothing turns none is.
+/// [`motion_cast`] with an observer that sees every time examined. If nothing turns, it sees none.
 ///
 /// # Errors
-/// As of [`motion_cast`].
+/// Those of [`motion_cast`].
 pub fn motion_cast_with<A, B>(
     a: &A,
     motion_a: impl Trajectory<Vector = A::Vector>,
@@ -188,7 +188,7 @@ where
 }
 
 /// What a search does beyond looks at one time by GJK and at what was closest before.
-#[allow(clippy::type_complexity, reason = "it is said once")]
+#[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct FullMotion<V: Vector> {
     pub(super) closer: &'static Closer<V>,
     /// The cast of bodies that do not turn.

@@ -103,7 +103,7 @@ impl<'s, V: Vector> MovingBody<'s, V> {
     }
 
     /// A bound on the acceleration of points of the core, as of [`Trajectory::acceleration_along`].
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn acceleration_along(&self, plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar {
         match &self.course {
             Course::Rest => Scalar::ZERO,

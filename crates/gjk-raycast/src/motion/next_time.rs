@@ -71,7 +71,7 @@ impl<V: Vector> Search<'_, V> {
         })
     }
 
-    /// The time after which the bodies have come nearer by `way`, as far as the last two looks foretell it.
+    /// The time after which the bodies have come nearer by `way`, as far as the last two looks predict it.
     ///
     /// With the closing speeds `w₀` and `w` at the beginning and the end of the last step `h`, in which they came
     /// nearer by `m·h`, the only cubic that agrees is `w·s + c·s²/2 + j·s³/6` with

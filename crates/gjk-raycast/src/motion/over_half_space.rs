@@ -1,4 +1,4 @@
-//! When a body that moves and turns meets a half-space.
+//! The first contact of a body that moves and turns with a half-space.
 
 use core::cell::Cell;
 
@@ -17,7 +17,7 @@ use crate::unit::{length_bound, lost_to_underflow};
 use crate::{HalfSpace, Motion, MotionCast, RayCastError};
 
 impl<V: Vector> HalfSpace<V> {
-    /// When a shape that moves and turns, `a`, first touches the half-space, `b`, which is at rest.
+    /// The first contact of a shape that moves and turns, `a`, with the half-space, `b`, which is at rest.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::DVec3};
@@ -38,13 +38,13 @@ impl<V: Vector> HalfSpace<V> {
     /// ```
     ///
     /// This is [`motion_cast`](crate::motion_cast()) against a body without an end: hits, misses and brackets mean the
-    /// same. At every time the body's lowest point is one support point, and the plane between the bodies is known.
-    /// What does not turn is answered by [`linear_cast`](Self::linear_cast).
+    /// same. At every time the body's lowest point is one support point, and the plane between the bodies is known. A
+    /// shape that does not turn is cast by [`linear_cast`](Self::linear_cast).
     ///
     /// The [`gradient`](crate::Impact::gradient) of a hit is that against a body at rest.
     ///
     /// # Errors
-    /// As of [`motion_cast`](crate::motion_cast()).
+    /// Those of [`motion_cast`](crate::motion_cast()).
     pub fn motion_cast<A: SupportMap<Vector = V> + ?Sized>(
         &self,
         shape: &A,
@@ -54,11 +54,11 @@ impl<V: Vector> HalfSpace<V> {
         self.motion_cast_with(shape, motion, options, |_| {})
     }
 
-    /// [`motion_cast`](Self::motion_cast), showing an observer every time that is looked at. Where nothing turns none
-    /// is.
+    /// [`motion_cast`](Self::motion_cast) with an observer that sees every time examined. If nothing turns, it sees
+    /// none.
     ///
     /// # Errors
-    /// As of [`motion_cast`](crate::motion_cast()).
+    /// Those of [`motion_cast`](crate::motion_cast()).
     pub fn motion_cast_with<A: SupportMap<Vector = V> + ?Sized>(
         &self,
         shape: &A,
@@ -102,16 +102,16 @@ struct OverHalfSpace<'s, V: Vector> {
     plane: Plane<V>,
     /// The support points computed.
     iterations: Cell<usize>,
-    /// What was found at the last time, which is mostly found again.
+    /// The hint of the last time, which mostly fits again.
     hint: Cell<Hint>,
 }
 
 impl<V: Vector> OverHalfSpace<'_, V> {
-    /// How high the body's lowest point is over the half-space at a time, less the target distance, and the point of
+    /// The height of the body's lowest point over the half-space at a time, less the target distance, and the point of
     /// its core, in the world.
     ///
-    /// The height is that of the sum of the origin, what the motion adds to that, and the support point, so that a body
-    /// far along the plane is known as well as any other.
+    /// The height is that of the sum of the origin, the displacement by the motion, and the support point, so that the
+    /// height of a body far along the plane is as accurate as any other.
     fn lowest(&self, time: V::Scalar) -> (Level<V::Scalar>, V) {
         let (origin, radius) = (self.body.core.origin, self.body.core.radius);
         let place = self.body.place(time);
@@ -161,13 +161,13 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
         }
     }
 
-    /// The normal is that of the plane, whichever is asked for.
+    /// The normal is that of the plane, whatever the argument.
     fn level(&self, time: V::Scalar, _normal: V) -> (V::Scalar, V::Scalar) {
         let (Level { value, error }, _) = self.lowest(time);
         (value, error)
     }
 
-    /// The plane does not turn, whatever rounding has made of a normal.
+    /// The plane does not turn, whatever rounding has done to a normal.
     fn acceleration_along(&self, _plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar {
         let normal = self.plane.normal();
         self.plane.per_length(self.body.acceleration_along(TurningPlane { from: normal, to: normal }, interval))
@@ -189,7 +189,7 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
         (height - way > margin).then_some(self.plane.unit)
     }
 
-    /// As of [two bodies](super::in_contact), of which only the one direction counts.
+    /// The same as for [two bodies](super::in_contact), with only one direction.
     fn stay_in_contact(&self, from: &Instant<V>, to: &Instant<V>, depth: V::Scalar) -> bool {
         self.body.strays(self.plane.unit, [from.time, to.time]) <= depth * Scalar::from_f64(4.0)
     }

@@ -8,7 +8,7 @@ use num_traits::Float as _;
 use super::trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};
 use crate::axial;
 
-/// A body's motion at a constant velocity and a constant angular velocity about a centre that moves with it:
+/// A motion at a constant velocity and a constant angular velocity about a centre that moves with the body:
 ///
 /// > x(t) = c + t·v + R(t)·(x − c),   with R(t) the rotation by |ω|·t about ω,
 ///
@@ -58,15 +58,15 @@ impl<V: Vector> RigidMotion<V> {
         Self { velocity, ..Self::default() }
     }
 
-    /// The rotation about a centre that stays where it is.
+    /// The rotation about a centre at rest.
     #[must_use]
     pub fn rotation(angular_velocity: V::AngularVelocity, center: V) -> Self {
         Self { velocity: V::ZERO, angular_velocity, center }
     }
 
     /// The motion that takes a body from one pose to another within `duration`: its own origin moves straight, and it
-    /// turns at a constant rate the short way round. It is a motion of the body as it is in the world in its first
-    /// pose, such as a [`Posed`](convex_support::Posed) shape.
+    /// turns at a constant rate the short way round. It moves a body in its first pose in the world, such as a
+    /// [`Posed`](convex_support::Posed) shape.
     ///
     /// ```
     /// use convex_support::glam::DVec2;

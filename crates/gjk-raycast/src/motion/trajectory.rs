@@ -1,4 +1,4 @@
-//! What the first contact of moving bodies needs to know of a motion.
+//! The trait of motions, for the first contact of moving bodies.
 
 use convex_support::{BoundingSphere, InvalidShape, Matrix, Posed, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
@@ -6,33 +6,34 @@ use num_traits::Float as _;
 use super::RigidMotion;
 use crate::unit::length_bound;
 
-/// A rigid motion: where the body is at any time, and a bound on the acceleration of its points in between.
+/// A rigid motion: the pose of a body at any time, and a bound on the acceleration of its points in between.
 ///
-/// Times are at least 0. At any time the body is where its shape says, moved by the [displacement](Self::displacement)
-/// of that time; for most motions the displacement of time 0 is none. [`RigidMotion`] is the motion at constant
-/// velocities, and [`ChainMotion`](crate::ChainMotion) that of a link whose joints move linearly. Implement this trait
-/// for other motions.
+/// Times are at least 0. At any time the body is in the place of its shape, moved by the
+/// [displacement](Self::displacement) of that time; for most motions the displacement of time 0 is none.
+/// [`RigidMotion`] is the motion at constant velocities, and [`ChainMotion`](crate::ChainMotion) that of a link whose
+/// joints move linearly. Implement this trait for other motions.
 ///
 /// # What an implementor must obey
-/// The bounds certify a first contact, so they must hold for all points of the body and for all times of the interval.
-/// This is most important for [`acceleration_along`](Self::acceleration_along), which alone proves that nothing happens
-/// between two times that are looked at. A larger bound costs time; a smaller one may let bodies pass through one
-/// another. [`velocity`](Self::velocity) only steers the search, so that a wrong one costs time, never correctness.
+/// The bounds certify a first contact, so they must hold for all points of the body and for all times of the
+/// interval. This is most important for [`acceleration_along`](Self::acceleration_along), which alone proves that
+/// nothing happens between two times that are examined. A larger bound costs time; a smaller one may let bodies pass
+/// through one another. [`velocity`](Self::velocity) only steers the search, so that a wrong one costs time, never
+/// correctness.
 pub trait Trajectory {
     /// The space the body moves in.
     type Vector: Vector;
 
-    /// Where the body is at a time, relative to where its shape says.
+    /// The displacement of the body at a time, from the place of its shape.
     fn displacement(&self, time: ScalarOf<Self>) -> Displacement<Self::Vector>;
 
     /// The velocity, at a time, of the body's point that is at `point` then.
     fn velocity(&self, time: ScalarOf<Self>, point: Self::Vector) -> Self::Vector;
 
     /// An upper bound of `2·r·ẋ(t) + n·ẍ(t)`, for all points `x` of the body that start in the ball, all times `t` of
-    /// the interval, and all normals `n` of the plane, which change at the rate `r`. It is to be finite for finite
-    /// intervals at least.
+    /// the interval, and all normals `n` of the plane, which change at the rate `r`. It should be finite at least for
+    /// finite intervals.
     ///
-    /// That is the second derivative of `n(t)·x(t)`, the height of the point over a plane that turns. Since it is
+    /// This is the second derivative of `n(t)·x(t)`, the height of the point over a plane that turns. Since it is
     /// linear in `n`, a bound that holds for the first and the last normal holds for those in between.
     fn acceleration_along(
         &self,
@@ -41,9 +42,9 @@ pub trait Trajectory {
         interval: [ScalarOf<Self>; 2],
     ) -> ScalarOf<Self>;
 
-    /// A ball that moves at constant velocity and contains, throughout the interval, everything that starts in `ball`.
-    /// The interval may be infinite. The provided method moves the ball along the chord of the way of its centre, and
-    /// grows it by how far the motion may leave that chord.
+    /// A ball that moves at constant velocity and contains, throughout the interval, every point that starts in `ball`.
+    /// The interval may be infinite. The provided method moves the ball along the chord of the path of its centre, and
+    /// grows it by a bound on how far the motion may leave this chord.
     fn moving_ball(
         &self,
         ball: BoundingSphere<Self::Vector>,
@@ -63,8 +64,8 @@ pub trait Trajectory {
         MovingBall { start, velocity, radius: ball.radius + sagitta }
     }
 
-    /// The same motion as a [`RigidMotion`], if it is one; the provided method returns `None`. Bodies whose motions do
-    /// not turn are cast by [`linear_cast`](crate::linear_cast), and bodies whose motions are equal do not meet.
+    /// The motion as a [`RigidMotion`], if it is one; the provided method returns `None`. Bodies whose motions do not
+    /// turn are cast by [`linear_cast`](crate::linear_cast), and bodies whose motions are equal do not meet.
     fn as_rigid_motion(&self) -> Option<RigidMotion<Self::Vector>> {
         None
     }
@@ -73,10 +74,11 @@ pub trait Trajectory {
 /// The scalar of the space a body moves in.
 pub(crate) type ScalarOf<M> = <<M as Trajectory>::Vector as Vector>::Scalar;
 
-/// Where a rigid motion has taken a body: `x ↦ x + shift + turn·(x − pivot)`, with `1 + turn` for the rotation.
+/// The displacement of a body by a rigid motion: `x ↦ x + shift + turn·(x − pivot)`, with `1 + turn` for the
+/// rotation.
 ///
-/// It holds what the motion adds to a point, so that bodies far from the world's origin, or from the point that they
-/// turn about, keep the digits of the distance between them.
+/// It holds only what the motion adds to a point, so that bodies far from the world's origin, or from the pivot, keep
+/// the digits of the distance between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Displacement<V: Vector> {
     /// The point that the body is turned about, in the world at time 0.
@@ -102,13 +104,13 @@ impl<V: Vector> Displacement<V> {
         Self { pivot: V::ZERO, shift, turn, turn_error: V::Scalar::ZERO, shift_error }
     }
 
-    /// Where it takes a point.
+    /// The displaced point.
     #[must_use]
     pub fn of(&self, point: V) -> V {
         point + self.shift + self.turned(point)
     }
 
-    /// What turning adds to a point.
+    /// The displacement of a point by the turn alone.
     pub(super) fn turned(&self, point: V) -> V {
         self.turn * (point - self.pivot)
     }
@@ -119,8 +121,7 @@ impl<V: Vector> Displacement<V> {
         <V::Matrix as Matrix>::IDENTITY + self.turn
     }
 
-    /// A body where the motion has taken it: the same shape in another pose, for the next step of a simulation or for
-    /// another query.
+    /// A displaced body: the same shape in another pose, for the next step of a simulation or for another query.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::{DQuat, DVec3}};

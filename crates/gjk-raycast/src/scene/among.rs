@@ -1,4 +1,4 @@
-//! Which bodies and pairs are asked about, and until when.
+//! The bodies and pairs of a question, and when it stops.
 
 use core::ops::ControlFlow;
 
@@ -8,7 +8,7 @@ use super::{Body, PairContact, Scene, SceneDistance, SceneRayCast, Work};
 use crate::{Contact, DistanceOptions, HalfSpace, Ray, RayCastError, RayCastOptions};
 
 /// The bodies of a scene that a question is about: all of them, or those that a closure picks, made by [`Scene::all`]
-/// and [`Scene::among`]. It has the questions that a scene answers.
+/// and [`Scene::among`]. Its methods are the questions that a scene answers.
 ///
 /// ```
 /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -34,15 +34,15 @@ pub struct Among<'s, S: SupportMap> {
     bodies: Option<&'s Picks<'s>>,
     without_pairs: Option<&'s Pairs<'s>>,
     until: Option<&'s StopFlag<'s>>,
-    /// What touched before.
+    /// The contacts of the last step.
     last: &'s [PairContact<S::Vector>],
 }
 
-/// Tells by its index whether a body is asked about.
+/// Whether a question is about the body with this index.
 type Picks<'f> = dyn Fn(usize) -> bool + Sync + 'f;
-/// Tells by their indices whether two bodies are not asked about.
+/// Whether the pair of these indices is left out.
 type Pairs<'f> = dyn Fn(usize, usize) -> bool + Sync + 'f;
-/// Tells whether to stop.
+/// Whether to stop.
 type StopFlag<'f> = dyn Fn() -> bool + Sync + 'f;
 
 impl<S: SupportMap> Clone for Among<'_, S> {
@@ -77,10 +77,10 @@ impl<S: SupportMap> Scene<S> {
         Among { bodies: Some(picked), ..self.all() }
     }
 
-    /// [`Among::ray_cast`] of all bodies: with [`nearest`](Self::nearest) the question that is asked most.
+    /// [`Among::ray_cast`] for all bodies: with [`nearest`](Self::nearest) the most common question.
     ///
     /// # Errors
-    /// As of [`Among::ray_cast`].
+    /// Those of [`Among::ray_cast`].
     pub fn ray_cast(
         &self,
         ray: Ray<S::Vector>,
@@ -89,7 +89,7 @@ impl<S: SupportMap> Scene<S> {
         self.all().ray_cast(ray, options)
     }
 
-    /// [`Among::nearest`] of all bodies.
+    /// [`Among::nearest`] for all bodies.
     pub fn nearest<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,
@@ -100,36 +100,36 @@ impl<S: SupportMap> Scene<S> {
 }
 
 impl<'s, S: SupportMap> Among<'s, S> {
-    /// Leaves out the pairs for whose indices `left_out` returns true, such as those of one group, or those that may
-    /// collide. It is called once for each pair whose boxes are near: with the lower index first, or for two scenes
-    /// with the index in the first one.
+    /// Leaves out the pairs for whose indices `left_out` returns true, such as those of one group, or those that
+    /// are allowed to collide. It is called once for each pair whose boxes are near: with the lower index first, or for
+    /// two scenes with the index in the first one.
     #[must_use]
     pub fn without_pairs(self, left_out: &'s (dyn Fn(usize, usize) -> bool + Sync + 's)) -> Self {
         Self { without_pairs: Some(left_out), ..self }
     }
 
     /// Ends a question early, as soon as `stop` returns true; it is called before each single query. The answer is then
-    /// about the bodies asked so far, and [`Work::cancelled`](crate::Work::cancelled) is set.
+    /// about the bodies tested so far, and [`Work::cancelled`](crate::Work::cancelled) is set.
     #[must_use]
     pub fn until(self, stop: &'s (dyn Fn() -> bool + Sync + 's)) -> Self {
         Self { until: Some(stop), ..self }
     }
 
-    /// Hands on the contacts of pairs in the last step, in the order in which they were told: points of theirs that
-    /// still hold are kept, as by [`contact_after`](crate::contact_after). Who keeps two lists, and swaps them after
-    /// each step, allocates nothing.
+    /// Passes the contacts of pairs in the last step, in the order of the last answer. Their points are kept while they
+    /// are valid, as by [`contact_after`](crate::contact_after). If you keep two lists, and swap them after each step,
+    /// nothing is allocated.
     #[must_use]
     pub fn after(self, last: &'s [PairContact<S::Vector>]) -> Self {
         Self { last, ..self }
     }
 
-    /// The contact that these bodies had.
+    /// The last contact of these bodies.
     pub(super) fn last_of(&self, [a, b]: [usize; 2]) -> Option<&'s Contact<S::Vector>> {
         let found = self.last.binary_search_by_key(&(a, b), |found| (found.a, found.b)).ok()?;
         Some(&self.last[found].contact)
     }
 
-    /// The body with this index, if it is asked about.
+    /// The body with this index, if the question is about it.
     #[inline]
     pub(super) fn body(&self, index: usize) -> Option<&'s Body<S>> {
         if self.bodies.is_some_and(|picks| !picks(index)) {
@@ -138,7 +138,7 @@ impl<'s, S: SupportMap> Among<'s, S> {
         self.scene.get(index)
     }
 
-    /// The half-spaces that are asked about, with their indices.
+    /// The half-spaces that the question is about, with their indices.
     pub(crate) fn half_spaces(&self) -> impl Iterator<Item = (usize, &'s HalfSpace<S::Vector>)> {
         let among = *self;
         among.scene.half_spaces.iter().filter_map(move |&index| match among.body(index)? {
@@ -147,7 +147,7 @@ impl<'s, S: SupportMap> Among<'s, S> {
         })
     }
 
-    /// The body with this index, if it is to be asked now, which counts as work; a break where the question ends early.
+    /// The body with this index, if it is to be tested now, which counts as work; a break if the question ends early.
     #[inline]
     pub(super) fn asked(&self, index: usize, work: &mut Work) -> ControlFlow<(), Option<&'s Body<S>>> {
         let Some(body) = self.body(index) else { return ControlFlow::Continue(None) };
@@ -158,9 +158,9 @@ impl<'s, S: SupportMap> Among<'s, S> {
         ControlFlow::Continue(Some(body))
     }
 
-    /// Asks the half-spaces, and then the bodies whose bound may be below the limit, those with the least bound mostly
-    /// first. `ask` is told the bound and returns the next limit, which a body reaches too if its index is below the
-    /// one beside it: of equals the lowest index counts. A break or an error ends it.
+    /// Tests the half-spaces, and then the bodies whose bound may be below the limit, mostly in the order of their
+    /// bounds. `ask` takes the bound and returns the next limit, with an index: a body at the limit counts if its index
+    /// is lower, since of equals the lowest index counts. A break or an error ends it.
     pub(super) fn in_order<B: Bound<S::Vector>, E>(
         &self,
         bound: &B,
@@ -195,14 +195,14 @@ impl<'s, S: SupportMap> Among<'s, S> {
         self.without_pairs.is_some_and(|left_out| left_out(a, b))
     }
 
-    /// Whether to stop, which is noted.
+    /// Whether to stop, which is recorded.
     #[inline]
     pub(super) fn stops(&self, work: &mut Work) -> bool {
         work.cancelled |= self.until.is_some_and(|stop| stop());
         work.cancelled
     }
 
-    /// The work with what was left out of all bodies.
+    /// The work, with the number of bodies that were left out.
     pub(super) fn finish(&self, work: &mut Work) {
         work.culled = self.scene.len() - work.tested;
     }

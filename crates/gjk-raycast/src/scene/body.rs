@@ -1,4 +1,4 @@
-//! A body of a scene, and what a single query says of it.
+//! A body of a scene, and its single queries.
 
 use convex_support::{AngularVelocity as _, Scalar as _, ScalarOf, SupportMap, Vector};
 
@@ -47,7 +47,7 @@ impl<S: SupportMap> Body<S> {
         }
     }
 
-    /// How far a shape, `a`, is from this body, `b`, or how deep in it, by
+    /// The distance of a shape, `a`, from this body, `b`, or minus its depth, by
     /// [`signed_distance`](crate::signed_distance()) or, for a half-space, by
     /// [`HalfSpace::signed_distance`](crate::HalfSpace::signed_distance), which needs no options.
     pub fn signed_distance<A: SupportMap<Vector = S::Vector> + ?Sized>(
@@ -63,7 +63,7 @@ impl<S: SupportMap> Body<S> {
 
     /// The contact of a shape, `a`, with this body, `b`, by [`contact`](crate::contact()) or, for a half-space, by
     /// [`HalfSpace::contact`](crate::HalfSpace::contact), which needs no options; `None` if they are farther apart than
-    /// `within`. [`Among::contacts_of`](crate::Among::contacts_of) asks all bodies that are near.
+    /// `within`. [`Among::contacts_of`](crate::Among::contacts_of) does this for all bodies that are near.
     pub fn contact<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,
@@ -116,11 +116,11 @@ impl<S: SupportMap> Body<S> {
         }
     }
 
-    /// The cast of a shape, `a`, and this body, `b`, as both move: [`motion_cast`](crate::motion_cast()), also of a
-    /// half-space.
+    /// The cast of a shape, `a`, and this body, `b`, as both move, by [`motion_cast`](crate::motion_cast()); the body
+    /// may be a half-space.
     ///
     /// # Errors
-    /// As of [`motion_cast`](crate::motion_cast()).
+    /// Those of [`motion_cast`](crate::motion_cast()).
     pub fn motion_cast_of_both<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,
@@ -145,7 +145,7 @@ impl<S: SupportMap> Body<S> {
     }
 }
 
-/// A motion as seen from something that moves: first by the motion, and then back by that of the observer.
+/// A motion in a moving frame: first the motion, and then the inverse of the frame's.
 pub(super) fn seen_from<V: Vector>(
     RigidMotion { velocity, angular_velocity, center }: RigidMotion<V>,
     motion: RigidMotion<V>,

@@ -1,4 +1,4 @@
-//! Which bodies a ray or a moving shape hits.
+//! The bodies that a ray or a moving shape hits.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -19,7 +19,7 @@ use crate::{
 };
 
 impl<S: SupportMap> Among<'_, S> {
-    /// The first body that the ray hits: the least λ of [`ray_cast`](crate::ray_cast) for each body.
+    /// The first body that the ray hits: the least λ of [`ray_cast`](crate::ray_cast) against each body.
     ///
     /// # Errors
     /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
@@ -32,7 +32,8 @@ impl<S: SupportMap> Among<'_, S> {
         self.first(&swept_point(ray), options.max_lambda, |body| Ok(body.ray_cast(ray, options)?.into()))
     }
 
-    /// All bodies that the ray hits, in the order of λ and then of their indices, into `hits`, which is emptied first.
+    /// Finds all bodies that the ray hits. Writes them into `hits`, which is emptied first, in the order of λ and then
+    /// of their indices.
     ///
     /// # Errors
     /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
@@ -87,11 +88,11 @@ impl<S: SupportMap> Among<'_, S> {
     }
 
     /// The first body that the moving shape meets: the least time of [`linear_cast`](crate::linear_cast) of the shape,
-    /// `a`, against each body, `b`. All bodies move with the same velocity, which is zero for a scene at rest: `Motion
-    /// { velocity_a, ..Motion::default() }`.
+    /// `a`, against each body, `b`. All bodies move with the same velocity, which is zero for a scene at rest:
+    /// `Motion { velocity_a, ..Motion::default() }`.
     ///
     /// # Errors
-    /// As of [`linear_cast`](crate::linear_cast()).
+    /// Those of [`linear_cast`](crate::linear_cast()).
     pub fn linear_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,
@@ -103,8 +104,9 @@ impl<S: SupportMap> Among<'_, S> {
         self.first(&swept, options.max_time, |body| Ok(body.linear_cast(shape, motion, options)?.into()))
     }
 
-    /// All bodies that the moving shape meets, in the order of the time and then of their indices, into `hits`, which
-    /// is emptied first: the hits of [`linear_cast`](crate::linear_cast) against each body, as if it were alone.
+    /// Finds all bodies that the moving shape meets: the hits of [`linear_cast`](crate::linear_cast) against each body,
+    /// as if it were alone. Writes them into `hits`, which is emptied first, in the order of the time and then of their
+    /// indices.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -122,7 +124,7 @@ impl<S: SupportMap> Among<'_, S> {
     /// ```
     ///
     /// # Errors
-    /// As of [`linear_cast`](crate::linear_cast()).
+    /// Those of [`linear_cast`](crate::linear_cast()).
     pub fn linear_cast_all<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,
@@ -157,7 +159,7 @@ impl<S: SupportMap> Among<'_, S> {
     /// ```
     ///
     /// # Errors
-    /// As of [`motion_cast`](crate::motion_cast()).
+    /// Those of [`motion_cast`](crate::motion_cast()).
     pub fn motion_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,
@@ -171,9 +173,9 @@ impl<S: SupportMap> Among<'_, S> {
         })
     }
 
-    /// The first body that a shape meets as both move: the bodies all by one rigid motion, such as what rides on a
-    /// vehicle or hangs on a gripper. It is the least time of [`motion_cast`](crate::motion_cast()) of the shape, `a`,
-    /// against each body, `b`; the point and the normal are those in the world at that time.
+    /// The first body that a shape meets as both move. All bodies share one rigid motion, such as loads on a vehicle or
+    /// on a gripper. The answer is the least time of [`motion_cast`](crate::motion_cast()) of the shape, `a`, against
+    /// each body, `b`; the point and the normal are those in the world at that time.
     ///
     /// ```
     /// use convex_support::{Ball, Capsule, Posed, glam::DVec3};
@@ -194,7 +196,7 @@ impl<S: SupportMap> Among<'_, S> {
     /// ```
     ///
     /// # Errors
-    /// As of [`motion_cast`](crate::motion_cast()).
+    /// Those of [`motion_cast`](crate::motion_cast()).
     pub fn motion_cast_of_both<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,
@@ -239,9 +241,9 @@ impl<S: SupportMap> Among<'_, S> {
 
     /// The first hit of all bodies that `bound` does not leave out; `ask` makes the single cast.
     ///
-    /// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, as it cannot be where
-    /// the hit's bracket is closed. Keys, and all that is kept here, are minima over bodies, in which one that was left
-    /// out by its box takes no part: so the order in which bodies are met does not matter, nor which others were met.
+    /// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, which is impossible if
+    /// the hit's bracket is closed. Keys, and all that is kept here, are minima over bodies. A body that its box left
+    /// out takes no part in them. So neither the order of the bodies matters, nor which others were tested.
     fn first<H: Copy, B: Bound<S::Vector>>(
         &self,
         bound: &B,
@@ -312,7 +314,7 @@ fn swept_point<V: Vector>(ray: Ray<V>) -> SweptBox<V> {
     SweptBox::new(V::splat(room), ray.source, ray.direction)
 }
 
-/// The box of a shape that moves, as seen from the bodies, with room for the target distance.
+/// The box of a shape that moves, in the frame of the bodies, with room for the target distance.
 fn swept_shape<A: SupportMap + ?Sized>(
     shape: &A,
     motion: Motion<A::Vector>,
@@ -327,8 +329,8 @@ fn swept_shape<A: SupportMap + ?Sized>(
     SweptBox::new(half + room, center, motion.velocity_a - motion.velocity_b)
 }
 
-/// The box of a shape that a scene is asked about: one that contains everything where a number of the shape is not
-/// finite, so that no body is left out and every single query says so.
+/// The box of the shape in a question. If a number of the shape is not finite, it contains everything, so that no
+/// body is left out and every single query reports it.
 pub(super) fn outer_box_of_question<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
     let all = S::Vector::splat(ScalarOf::<S>::max_value());
     outer_box(shape).unwrap_or(Aabb { min: -all, max: all })

@@ -1,4 +1,4 @@
-//! What touches what: the contacts of a shape with the bodies of a scene, and of these with each other.
+//! The contacts of a shape with the bodies of a scene, and of these with each other.
 
 use alloc::vec::Vec;
 
@@ -11,8 +11,8 @@ use crate::contact::contact_of;
 use crate::{Contact, SignedDistanceOptions};
 
 impl<S: SupportMap> Among<'_, S> {
-    /// The [contacts](Body::contact) of the shape, `a`, with all bodies, `b`, that are no farther than `within` from
-    /// it, in the order of their indices, into `contacts`, which is emptied first.
+    /// Finds the [contacts](Body::contact) of the shape, `a`, with all bodies, `b`, that are no farther than `within`
+    /// from it. Writes them into `contacts`, which is emptied first, in the order of their indices.
     ///
     /// ```
     /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
@@ -44,9 +44,9 @@ impl<S: SupportMap> Among<'_, S> {
         work
     }
 
-    /// The [contacts](crate::contact()) of all pairs of bodies that are no farther than `within` from each other, in
-    /// the order of their indices, into `contacts`, which is emptied first: all that a step of a simulation has to
-    /// resolve. Half-spaces make no contacts with each other.
+    /// Finds the [contacts](crate::contact()) of all pairs of bodies that are no farther than `within` from each other:
+    /// all that a step of a simulation has to resolve. Writes them into `contacts`, which is emptied first, in the
+    /// order of their indices. Half-spaces make no contacts with each other.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::DVec3};
@@ -75,7 +75,7 @@ impl<S: SupportMap> Among<'_, S> {
         })
     }
 
-    /// The contacts of all pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than
+    /// Finds the contacts of all pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than
     /// `within` from each other.
     pub fn contacts_between<T: SupportMap<Vector = S::Vector>>(
         &self,
@@ -108,8 +108,7 @@ impl<S: SupportMap> Among<'_, S> {
     }
 }
 
-/// How far boxes may be from each other, whose bodies have to be so deep in one another if it is negative: boxes have
-/// no depth.
+/// The limit for the distance of boxes. Boxes have no depth, so that a negative `within` becomes zero.
 fn of_boxes<S: SupportMap>(within: ScalarOf<S>) -> ScalarOf<S> {
     within.max(ScalarOf::<S>::ZERO)
 }

@@ -1,4 +1,4 @@
-//! Questions about many bodies, of which few have to be asked.
+//! Questions about many bodies, of which few need a query.
 
 mod among;
 mod body;
@@ -26,23 +26,24 @@ pub use self::result::{
     SceneDistance, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, SceneSignedDistance, Work,
 };
 
-/// Bodies that are asked together: which is hit first, which is nearest, which pairs are near each other.
+/// A set of bodies with a tree of their boxes, for questions such as the first hit, the nearest body, or all near
+/// pairs.
 ///
-/// All bodies are of one type `S`, which is any [`SupportMap`]: one kind of shape, an enum of yours, or `Box<dyn
-/// SupportMap<Vector = DVec3>>` for a mixture; by value or by reference. For methods that use several threads, it has
-/// to be `Sync`: `Box<dyn SupportMap<Vector = DVec3> + Sync>`. A body is named by its index, which stays the same until
-/// the body is removed. A half-space is no support map, since it has no end, but can be a body too
-/// ([`insert_half_space`](Self::insert_half_space)).
+/// All bodies are of one type `S`, which is any [`SupportMap`]: one kind of shape, an enum of yours, or
+/// `Box<dyn SupportMap<Vector = DVec3>>` for a mixture; by value or by reference. For methods that use several
+/// threads, it has to be `Sync`: `Box<dyn SupportMap<Vector = DVec3> + Sync>`. A body is named by its index, which
+/// stays the same until the body is removed. A half-space is no support map, since it has no end, but can be a body
+/// too ([`insert_half_space`](Self::insert_half_space)).
 ///
-/// Scenes answer ray casts, linear and motion casts, distances, contacts, and near or touching pairs: of
-/// [`all`](Self::all) bodies, or [`among`](Self::among) some. The first ray hit and the nearest body of all can be
-/// asked of the scene itself.
+/// Scenes answer ray casts, linear and motion casts, distances, contacts, and near or touching pairs, for
+/// [`all`](Self::all) bodies or [`among`](Self::among) some. The first ray hit and the nearest body of all are also
+/// methods of the scene itself.
 ///
 /// # Answers
-/// Every answer is the one that results if the single query is asked of each body (or pair) in the order of their
-/// indices, *to the last bit*; of equal answers the one with the lowest index counts. It does not depend on the number
-/// of threads or on how the scene was built. A tree of boxes tells which bodies need not be asked. The box of a body
-/// has room for the rounding of its queries, so that a box which is too far away is a proof about the query, not only
+/// Every answer is the same, *to the last bit*, as if the single query were made for each body (or pair) in the order
+/// of their indices; of equal answers the one with the lowest index counts. It does not depend on the number of
+/// threads or on how the scene was built. A tree of boxes tells which bodies need no query. The box of a body has
+/// room for the rounding of its queries, so that a box which is too far away is a proof about the query, not only
 /// about the body. Every answer says how much was left out ([`Work`]).
 ///
 /// If a query ends undecided, or with a hit whose bracket is still open, the box of the body may prove more than the
@@ -72,23 +73,24 @@ pub use self::result::{
 /// ```
 ///
 /// # Bodies that move
-/// [`update`](Self::update) moves all bodies and [`replace`](Self::replace) one; [`insert`](Self::insert) adds a body,
-/// and [`remove`](Self::remove) takes one out. The tree is adjusted each time, and is built anew when that is worth it.
+/// [`update`](Self::update) moves all bodies and [`replace`](Self::replace) one; [`insert`](Self::insert) adds a
+/// body, and [`remove`](Self::remove) takes one out. The tree is adjusted each time, and is rebuilt when that is
+/// worth it.
 ///
-/// To find the pairs of bodies that may meet while all of them move straight during a step, put into a scene what each
-/// covers in that time, the `MinkowskiSum` of the body and a `Segment`, and ask for the pairs within 0.
+/// To find the pairs of bodies that may meet while all of them move straight during a step, make a scene of their
+/// swept volumes, each the `MinkowskiSum` of the body and a `Segment`, and ask for the pairs within 0.
 ///
 /// # Groups
-/// A compound is represented by several bodies that are moved together. [`among`](Self::among) asks only about the
-/// bodies that a closure picks, such as those of a layer, and [`Among::without_pairs`] leaves out pairs, such as those
-/// of neighbouring links.
+/// A compound is represented by several bodies that are moved together. [`among`](Self::among) restricts a question
+/// to the bodies that a closure picks, such as those of a layer, and [`Among::without_pairs`] leaves out pairs, such
+/// as those of neighbouring links.
 #[derive(Clone, Debug)]
 pub struct Scene<S: SupportMap> {
     bodies: Vec<Option<Body<S>>>,
     tree: Bvh<S::Vector>,
     /// The indices of half-spaces, which no box contains, in their order.
     half_spaces: Vec<usize>,
-    /// Indices of bodies that were removed, for new ones.
+    /// Indices of removed bodies, to be used again.
     free: Vec<usize>,
 }
 
@@ -113,7 +115,7 @@ impl<S: SupportMap> Scene<S> {
         self.bodies.len() - self.free.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no bodies.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -139,7 +141,7 @@ impl<S: SupportMap> Scene<S> {
     /// Adds a body and returns its index: the index that became free last, or a new one.
     ///
     /// # Errors
-    /// [`SceneError::NotFinite`], with the index that it would have had, if its box is not finite.
+    /// [`SceneError::NotFinite`], with the index that the body would have had, if its box is not finite.
     pub fn insert(&mut self, body: S) -> Result<usize, SceneError> {
         let index = self.free.last().copied().unwrap_or(self.bodies.len());
         let around = outer_box(&body).ok_or(SceneError::NotFinite { body: index })?;
@@ -217,7 +219,7 @@ impl<S: SupportMap> Scene<S> {
         refused.map_or(Ok(()), |body| Err(SceneError::NotFinite { body }))
     }
 
-    /// Builds the tree anew. Nothing else changes; after many insertions, questions may become faster.
+    /// Rebuilds the tree. Nothing else changes; after many insertions, questions may become faster.
     pub fn rebuild(&mut self) {
         self.tree.rebuild();
     }

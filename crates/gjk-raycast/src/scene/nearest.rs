@@ -1,4 +1,4 @@
-//! The nearest body, and all that are near.
+//! The nearest body, and all near bodies.
 
 use alloc::vec::Vec;
 use core::convert::Infallible;
@@ -13,7 +13,7 @@ use super::{Among, Body};
 use crate::{DistanceOptions, SignedDistanceOptions};
 
 impl<S: SupportMap> Among<'_, S> {
-    /// The body nearest to the shape, if it is within the [limit](DistanceOptions::limit) of the options: the least of
+    /// The body nearest to the shape, if it is within the [limit](DistanceOptions::limit) of the options: the least
     /// [`distance`](crate::distance()) from the shape, `a`, to each body, `b`.
     pub fn nearest<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
@@ -36,8 +36,8 @@ impl<S: SupportMap> Among<'_, S> {
         SceneDistance { nearest, lower, work }
     }
 
-    /// The `count` bodies nearest to the shape, or as many as are within the [limit](DistanceOptions::limit), in the
-    /// order of their distances and then of their indices, into `bodies`, which is emptied first.
+    /// Finds the `count` bodies nearest to the shape, or as many as are within the [limit](DistanceOptions::limit).
+    /// Writes them into `bodies`, which is emptied first, in the order of their distances and then of their indices.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -77,7 +77,7 @@ impl<S: SupportMap> Among<'_, S> {
         work
     }
 
-    /// The body whose [`signed_distance`](crate::signed_distance()) from the shape, `a`, is least: the one that the
+    /// The body with the least [`signed_distance`](crate::signed_distance()) from the shape, `a`: the one that the
     /// shape is deepest in, or the nearest if it is in none; and the lowest index of equals.
     ///
     /// ```
@@ -117,8 +117,8 @@ impl<S: SupportMap> Among<'_, S> {
         SceneSignedDistance { least, lower, work }
     }
 
-    /// All bodies that are no farther than `within` from the shape by [`distance`](crate::distance()), in the order of
-    /// their indices, into `bodies`, which is emptied first.
+    /// Finds all bodies that are no farther than `within` from the shape by [`distance`](crate::distance()). Writes
+    /// them into `bodies`, which is emptied first, in the order of their indices.
     pub fn all_within<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,
@@ -135,8 +135,8 @@ impl<S: SupportMap> Among<'_, S> {
         work
     }
 
-    /// What there is to `tell` of the bodies whose boxes are no farther than `within` from that of the shape, in no
-    /// order.
+    /// Collects the results of `tell` for the bodies whose boxes are no farther than `within` from that of the shape,
+    /// in no order.
     pub(super) fn near<A: SupportMap<Vector = S::Vector> + ?Sized, R>(
         &self,
         shape: &A,

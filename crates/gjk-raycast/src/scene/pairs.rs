@@ -11,8 +11,9 @@ use super::{Among, Body, Scene};
 use crate::{DistanceOptions, distance};
 
 impl<S: SupportMap> Among<'_, S> {
-    /// All pairs of bodies that are no farther than `within` from each other by [`distance`](crate::distance()), in the
-    /// order of their indices, into `pairs`, which is emptied first. Half-spaces make no pairs with each other.
+    /// Finds all pairs of bodies that are no farther than `within` from each other by [`distance`](crate::distance()).
+    /// Writes them into `pairs`, which is emptied first, in the order of their indices. Half-spaces make no pairs with
+    /// each other.
     pub fn pairs_within(
         &self,
         within: ScalarOf<S>,
@@ -22,8 +23,8 @@ impl<S: SupportMap> Among<'_, S> {
         self.find_pairs(within, pairs, &|pair, a, b| between(pair, a, b, options.with_limit(within)))
     }
 
-    /// All pairs of one of these bodies, `a`, and any of another scene, `b`, that are no farther than `within` from
-    /// each other.
+    /// Finds all pairs of one of these bodies, `a`, and any of another scene, `b`, that are no farther than `within`
+    /// from each other.
     pub fn pairs_between<T: SupportMap<Vector = S::Vector>>(
         &self,
         other: &Scene<T>,
@@ -49,7 +50,8 @@ impl<S: SupportMap> Among<'_, S> {
         self.par_find_pairs(within, pairs, &|pair, a, b| between(pair, a, b, options.with_limit(within)))
     }
 
-    /// What there is to `tell` of the pairs of these bodies whose boxes are no farther than `within` from each other.
+    /// Collects the results of `tell` for the pairs of these bodies whose boxes are no farther than `within` from each
+    /// other.
     pub(super) fn find_pairs<P: OfPair>(
         &self,
         within: ScalarOf<S>,
@@ -62,7 +64,7 @@ impl<S: SupportMap> Among<'_, S> {
         asking.finish()
     }
 
-    /// The same of pairs of one of these bodies and one of another scene.
+    /// The same for pairs of one of these bodies and one of another scene.
     pub(super) fn find_pairs_between<T: SupportMap<Vector = S::Vector>, P: OfPair>(
         &self,
         other: &Scene<T>,
@@ -112,7 +114,7 @@ impl<S: SupportMap> Among<'_, S> {
     }
 }
 
-/// What a list of pairs holds.
+/// An element of a list of pairs.
 pub(super) trait OfPair {
     /// The indices of the bodies.
     fn indices(&self) -> [usize; 2];
@@ -137,7 +139,7 @@ struct Asking<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>, F, P> {
     /// Whether both are one scene.
     same: bool,
     within: ScalarOf<S>,
-    /// What is told of two bodies, if anything.
+    /// The result for two bodies, if there is any.
     tell: &'p F,
     pairs: &'p mut Vec<P>,
     work: Work,
@@ -149,7 +151,7 @@ where
     T: SupportMap<Vector = S::Vector>,
     F: Fn([usize; 2], &Body<S>, &Body<T>) -> Option<P>,
 {
-    /// Asks about the pairs of bounded bodies whose boxes are near.
+    /// Tests the pairs of bounded bodies whose boxes are near.
     fn search(&mut self, search: PairSearch<'_, S::Vector>) {
         let nodes = search.visit(|i, j| self.ask(i, j));
         self.work.nodes += nodes;
@@ -169,7 +171,7 @@ where
         ControlFlow::Continue(())
     }
 
-    /// Asks about the bodies that are near half-spaces, sorts the pairs, and says what was left out of all.
+    /// Tests the bodies that are near half-spaces, sorts the pairs, and counts those that were left out.
     fn finish(mut self) -> Work {
         let (a, b, same, within) = (self.a, self.b, self.same, self.within);
         for (index, half_space) in a.half_spaces() {
@@ -185,7 +187,7 @@ where
         self.work
     }
 
-    /// The number of pairs that there are, without those of half-spaces alone.
+    /// The number of all pairs, without those of half-spaces alone.
     fn all(&self) -> usize {
         let (a, b) = (self.a.scene, self.b.scene);
         if self.same {
@@ -197,7 +199,7 @@ where
     }
 }
 
-/// The distance from one body to another, if it is within the limit; of two half-spaces there is none to speak of.
+/// The distance from one body to another, if it is within the limit; `None` for two half-spaces.
 fn between<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
     [i, j]: [usize; 2],
     a: &Body<S>,

@@ -6,15 +6,15 @@ use convex_support::{Scalar, Vector};
 
 use crate::{Contact, Distance, Impact, RayHit, SignedDistance, Status};
 
-/// What was done for an answer, and what was left out: a report that need not be looked at.
+/// What was done for an answer, and what was left out. It may be ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Work {
-    /// Nodes of the tree that were looked into; for pairs, pairs of nodes.
+    /// Nodes of the tree that were tested; for pairs, pairs of nodes.
     pub nodes: usize,
-    /// Bodies, or pairs, that a single query was made for.
+    /// Bodies, or pairs, with a single query.
     pub tested: usize,
-    /// Bodies, or pairs, that none was made for.
+    /// Bodies, or pairs, without one.
     pub culled: usize,
     /// Whether the closure of [`Among::until`](crate::Among::until) ended the search early: the answer is then that of
     /// the bodies tested so far, and lower bounds are 0.
@@ -23,27 +23,27 @@ pub struct Work {
 
 /// The first body hit by a ray or by a moving shape.
 ///
-/// `H` is what the single query says of a hit, and `S` the scalar.
+/// `H` is the hit of the single query, and `S` the scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SceneCast<H, S: Scalar> {
-    /// The first hit; `None` where every body is missed. Of bodies hit at the same λ or time, the one with the lowest
-    /// index.
+    /// The first hit; `None` if every body is missed. Of bodies hit at the same λ or time, it is the one with the
+    /// lowest index.
     pub first: Option<BodyHit<H, S>>,
-    /// No body is hit before this λ or time; infinite where all are missed.
+    /// No body is hit before this λ or time; infinite if all are missed.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: S,
-    /// Of the bodies whose cast was [undecided](crate::Outcome::Undecided) and that may be hit before the first hit,
-    /// the one that may be hit earliest.
+    /// The body that may be hit earliest, among those whose cast was [undecided](crate::Outcome::Undecided) and that
+    /// may be hit before the first hit.
     pub undecided: Option<usize>,
     /// What was done and what was left out.
     pub work: Work,
 }
 
 impl<H, S: Scalar> SceneCast<H, S> {
-    /// Whether the outcome is certain: a hit is where its upper bound is finite and no body before it is undecided,
-    /// and a miss where no body is.
+    /// Whether the outcome is certain. A hit is certain if its upper bound is finite and no body before it is
+    /// undecided, a miss if no body is.
     #[must_use]
     pub fn is_certain(&self) -> bool {
         self.undecided.is_none() && !self.work.cancelled && self.first.as_ref().is_none_or(BodyHit::is_certain)
@@ -59,7 +59,7 @@ pub type SceneLinearCast<V> = SceneCast<Impact<V>, <V as Vector>::Scalar>;
 /// The answer of [`Among::motion_cast`](crate::Among::motion_cast).
 pub type SceneMotionCast<V> = SceneCast<Impact<V>, <V as Vector>::Scalar>;
 
-/// Which body is hit, and what the single query for it answers.
+/// The body that is hit, with the hit of its single query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyHit<H, S: Scalar> {
@@ -102,14 +102,14 @@ pub struct SceneHits {
 pub struct SceneAnyHit {
     /// Whether a body is hit.
     pub hit: bool,
-    /// Where none is for certain, the lowest index of a body whose cast was undecided, or whose hit may be a miss.
+    /// If no hit is certain, the lowest index of a body whose cast was undecided, or whose hit may be a miss.
     pub undecided: Option<usize>,
-    /// What was done and what was left out. It depends on which of several bodies was met first.
+    /// What was done and what was left out. It depends on which of several bodies was tested first.
     pub work: Work,
 }
 
 impl SceneAnyHit {
-    /// Whether the answer is certain: a hit is where that of one body is, and a miss where that of every body is.
+    /// Whether the answer is certain: a hit is if the hit of one body is, and a miss if that of every body is.
     #[must_use]
     pub const fn is_certain(&self) -> bool {
         self.undecided.is_none() && !self.work.cancelled
@@ -122,7 +122,8 @@ impl SceneAnyHit {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct SceneDistance<V: Vector> {
-    /// The nearest body; `None` where none is within the limit. Of bodies equally near, the one with the lowest index.
+    /// The nearest body; `None` if none is within the limit. Of bodies equally near, it is the one with the lowest
+    /// index.
     pub nearest: Option<BodyDistance<V>>,
     /// No body is nearer than this: the least of the limit and of the lower ends of all brackets.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
@@ -148,9 +149,9 @@ pub struct BodyDistance<V: Vector> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
 pub struct SceneSignedDistance<V: Vector> {
-    /// The body with the least signed distance; `None` where none is within the limit.
+    /// The body with the least signed distance; `None` if none is within the limit.
     pub least: Option<BodySignedDistance<V>>,
-    /// No body has a lesser one: the least of the limit and of the lower ends of all brackets.
+    /// No body has a smaller one: the least of the limit and of the lower ends of all brackets.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
     /// What was done and what was left out.
@@ -205,7 +206,7 @@ pub struct PairContact<V: Vector> {
     pub contact: Contact<V>,
 }
 
-/// Empties a list of the caller's and keeps its memory.
+/// Empties a list of the caller, and keeps its memory.
 pub(super) fn reuse<T>(list: &mut Vec<T>) -> &mut Vec<T> {
     list.clear();
     list

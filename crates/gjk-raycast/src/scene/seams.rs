@@ -1,4 +1,4 @@
-//! Contacts at seams, where bodies of a scene meet that are one surface together.
+//! Contacts at seams, where bodies of a scene form one surface together.
 
 use alloc::vec::Vec;
 
@@ -10,14 +10,14 @@ use super::result::{BodyContact, PairContact};
 use crate::{Contact, SignedDistanceOptions, signed_distance};
 
 impl<S: SupportMap> Scene<S> {
-    /// Leaves out of the [contacts of a shape](crate::Among::contacts_of) those at seams, and says how many these were:
-    /// where a floor is made of boxes or triangles, a body that slides over it meets the edges and sides at which they
-    /// lie on one another, and would be stopped or thrown up by them.
+    /// Removes the contacts at seams from the [contacts of a shape](crate::Among::contacts_of), and returns their
+    /// number. If a floor is made of boxes or triangles, a body that slides over it meets the edges and sides at which
+    /// these lie on one another, and would be stopped or thrown up by them.
     ///
-    /// A point of a contact is at a seam if it is a point of another body too, which reaches beyond it along the
+    /// A point of a contact is at a seam if it is a point of another body too, which extends beyond it along the
     /// normal: no surface of the two together faces that way. If all points of a contact are at seams with bodies whose
-    /// contacts are in the list, it is left out. The edges that stand out, at the end of a floor or of a step, are at
-    /// none.
+    /// contacts are in the list, it is removed. Edges that stand out, at the end of a floor or of a step, are not at
+    /// seams.
     ///
     /// ```
     /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
@@ -42,9 +42,9 @@ impl<S: SupportMap> Scene<S> {
         })
     }
 
-    /// The same of the contacts of [all pairs](crate::Among::contacts_within), of which either body may be one of the
-    /// pieces: one is left out if all of its points are at seams of one of its bodies with others that touch the other
-    /// one.
+    /// The same for the contacts of [all pairs](crate::Among::contacts_within), where either body may be one of the
+    /// pieces. A contact is removed if all of its points are at seams of one of its bodies with others that touch the
+    /// other one.
     pub fn leave_out_seams_of_pairs(&self, contacts: &mut Vec<PairContact<S::Vector>>) -> usize {
         leave_out(contacts, |contacts, &PairContact { a, b, contact }| {
             [(a, b, contact), (b, a, contact.reversed())].into_iter().any(|(moving, piece, contact)| {
@@ -57,8 +57,8 @@ impl<S: SupportMap> Scene<S> {
         })
     }
 
-    /// The same of the [contacts of this scene and another](crate::Among::contacts_between), of which either may be
-    /// made of pieces.
+    /// The same for the [contacts of this scene and another](crate::Among::contacts_between), where either may be made
+    /// of pieces.
     pub fn leave_out_seams_between<T: SupportMap<Vector = S::Vector>>(
         &self,
         other: &Scene<T>,
@@ -71,13 +71,13 @@ impl<S: SupportMap> Scene<S> {
         })
     }
 
-    /// Whether all points of a contact, of its second body, are covered by one of the others.
+    /// Whether all points of a contact, on its second body, are covered by one of the others.
     fn is_at_seam<I: Iterator<Item = usize>>(&self, contact: &Contact<S::Vector>, others: impl Fn() -> I) -> bool {
         let covers = |point, other| self.reaches_beyond(other, point, contact.normal);
         contact.points().iter().all(|point| others().any(|other| covers(point.point_b, other)))
     }
 
-    /// Whether a point is one of a convex body, but for the root of rounding, and the body reaches beyond it along a
+    /// Whether a point is one of a convex body, but for the root of rounding, and the body extends beyond it along a
     /// unit vector.
     fn reaches_beyond(&self, body: usize, point: S::Vector, normal: S::Vector) -> bool {
         let Some(body) = self.get(body).and_then(|body| body.convex()) else { return false };
@@ -90,7 +90,7 @@ impl<S: SupportMap> Scene<S> {
     }
 }
 
-/// Leaves contacts out one after the other, each by what is left, and says how many these were.
+/// Removes contacts one after the other, each by the remaining ones, and returns their number.
 fn leave_out<C>(contacts: &mut Vec<C>, is_left_out: impl Fn(&[C], &C) -> bool) -> usize {
     let before = contacts.len();
     let mut i = 0;

@@ -11,13 +11,13 @@ use crate::SignedDistanceOptions;
 /// Newton's steps from one direction.
 const MAX_STEPS: usize = 12;
 
-/// Steps in a row that may find nothing lower: of two pieces that meet, one is foretold from farther away until it is
+/// Steps in a row that may find nothing lower: of two pieces that meet, one is predicted from farther away until it is
 /// seen again.
 const PATIENCE: usize = 2;
 
 /// Newton's method from a direction to the bottom of its basin, on one smooth piece of the boundary or along the fold
-/// between two. `others` are vertices near by, one of which may be of the second piece. The bottom, and what was
-/// not foretold on the way there, make the polytope larger as well. A `last` look goes to edges, too, where pieces
+/// between two. `others` are vertices near by, one of which may be of the second piece. The bottom, and what was not
+/// predicted on the way there, make the polytope larger as well. A `last` look goes to edges, too, where pieces
 /// without a bottom of their own meet others, which the polytope comes to by itself if it goes on. `None` where a
 /// support point is not finite.
 pub(super) fn descend<V: Vector>(
@@ -74,7 +74,7 @@ pub(super) fn descend<V: Vector>(
 }
 
 /// The support point that is farthest beyond a piece where that piece alone would lead; where it would lead nowhere,
-/// the one that it foretells worst.
+/// the one that it predicts worst.
 fn contradiction<V: Vector>(piece: &Piece<V>, boundary: &Boundary<V>, others: &[u16]) -> Option<u16> {
     let to = piece.step();
     let excess = |vertex: &Vertex<V>| match to {

@@ -1,4 +1,4 @@
-//! The plain case: shapes of which the closest points are known in closed form.
+//! The plain case: shapes whose closest points are known in closed form.
 
 use convex_support::{Core, Scalar, Vector};
 use num_traits::Float as _;
@@ -11,12 +11,12 @@ use crate::gjk::rounding;
 use crate::observer::Observer;
 use crate::{Iterate, Status};
 
-/// The signed distance of shapes whose cores are apart by more than a few errors, and whose closest points are known in
-/// closed form, as of a ball and a box, whether the ball reaches the box or not. There is nothing to search, and all is
-/// done in the world's unit. Near contact they are looked at more closely.
+/// The signed distance of shapes whose cores are apart by more than a few errors, and whose closest points are known
+/// in closed form, such as a ball and a box, whether they overlap or not. There is nothing to search, and everything
+/// is computed in the world's unit. Near contact they are measured again.
 ///
-/// The plane of the support point across the vector between those points is as far as they are, to rounding, or it is
-/// left to the search.
+/// The plane of the support point across the vector between those points is as far as they are, to rounding;
+/// otherwise the search takes over.
 #[inline(always)]
 pub(crate) fn direct<T: Shapes + ?Sized>(
     shapes: &T,
@@ -30,7 +30,7 @@ pub(crate) fn direct<T: Shapes + ?Sized>(
     let points = pair.closest_points(offset, size)?;
     let v = pair.vector_between(points, offset);
     let (length, radius, error) = (v.length(), pair.radius(), error_of_points(&pair, size));
-    // As near as bodies are looked at closely for their distance, which counts on more for rounding.
+    // The gap below which the distance is measured again; it allows for more rounding.
     let near = (rounding(size) + pair.error()) * Scalar::from_f64(NEAR);
     // NaN is left to the search.
     if !(length.min((length - radius).abs()) > near) || max_iterations == 0 {

@@ -14,9 +14,9 @@ use crate::gjk::Gjk;
 use crate::observer::Observer;
 use crate::{Iterate, Status};
 
-/// How wide a bracket may stay, relative to the way out, where it is as narrow as the tolerance; and how many more
-/// support points it is given to become so. A tolerance relative to the size may be many times as wide as the way is
-/// long, of bodies that barely touch.
+/// The width of a bracket relative to the way out, below which the tolerance is enough; and the number of further
+/// support points to become so narrow. A tolerance relative to the size may be many times as wide as the way is long,
+/// for bodies that barely touch.
 const LITTLE: f64 = 1e-6;
 const MORE: usize = 24;
 
@@ -39,8 +39,8 @@ impl<S: Scalar> Closed<S> {
         Self { from: time, lowered: time, h }
     }
 
-    /// Whether all support points are spent, at a time when the way out is `h`; what is lower by no more than a
-    /// `little` is none.
+    /// Whether all support points are spent, at a time when the way out is `h`; a way lower by no more than a `little`
+    /// does not count.
     fn is_spent(&mut self, time: usize, h: S, little: S) -> bool {
         if self.h - h > little {
             (self.lowered, self.h) = (time, h);
@@ -49,32 +49,32 @@ impl<S: Scalar> Closed<S> {
     }
 }
 
-/// What an expansion knows at its end; lengths in the unit of the cores.
+/// The result of an expansion; lengths in the unit of the cores.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expanded<V: Vector> {
     pub(super) way: WayOut<V>,
     /// Points of both cores at its ends.
     pub(super) ends: Ends<V>,
-    /// The ball of this radius about zero is certain to be within the difference. Of a negative number, zero is certain
-    /// to be no farther from it than its amount.
+    /// The ball of this radius about zero is certainly within the difference. If it is negative, zero is certainly no
+    /// farther from the difference than its amount.
     pub(super) inner: V::Scalar,
     pub(super) status: Status,
     pub(super) unexpanded: usize,
 }
 
-/// The search for the direction `u` in which the difference `K` of two cores reaches least far beyond zero.
+/// The search for the direction `u` in which the support value of the difference `K` of two cores is least.
 ///
 /// Every unit vector bounds the depth from above, by its support value `h(u)`; a polytope of support points with zero
-/// within bounds it from below, by the facet nearest to zero. So that facet is the only one worth a look: the support
-/// point along its normal either shows that it is of the boundary of `K`, and then it decides, or makes the polytope
+/// within bounds it from below, by the facet nearest to zero. So only that facet has to be examined: the support
+/// point along its normal either shows that it is on the boundary of `K`, and then it decides, or makes the polytope
 /// larger (van den Bergen, *Proximity queries and penetration depth computation on 3D game objects*, 2001). Zero need
 /// not be within the polytope at first. Facets that it is beyond are the nearest by their sign, and grow until it is
-/// within, or one of them separates it from `K`. Until then how far it is beyond their planes proves nothing, since two
-/// planes may meet at an angle as sharp as one likes; zero is no farther from `K` than the point that GJK has met, or
-/// than a point of the polytope.
+/// within, or one of them separates it from `K`. Until then its distance beyond their planes proves nothing, since
+/// two planes may meet at an angle as sharp as one likes; zero is no farther from `K` than the point that GJK has
+/// found, or than a point of the polytope.
 ///
-/// Where `K` is smooth its facets never are of the boundary, and the polytope is only to show that there is no shorter
-/// way; the way itself is found by Newton's method, in each basin that a facet leads to.
+/// If `K` is smooth, its facets never are on the boundary, and the polytope only shows that there is no shorter way;
+/// Newton's method finds the way itself, in each basin that a facet leads to.
 pub(super) fn expand<V: Vector>(
     cores: &mut Cores<'_, V>,
     state: &mut Gjk<V>,
@@ -126,7 +126,7 @@ fn expand_within<V: Vector>(
                 Closing::Again => {}
             }
         }
-        // Certainly so deep.
+        // The depth is certainly this large.
         if inner - cores.greatest_error() > depth_limit {
             is_deep = true;
             break Status::Converged;
@@ -140,28 +140,28 @@ fn expand_within<V: Vector>(
     };
     let Expansion { way, closed, met, .. } = expansion;
     let status = if closed.is_some() { Status::Converged } else { status };
-    // Who asks no more than whether they are so deep asks for no better points.
+    // A question only about a limit of the depth needs no better points.
     let for_ends = if is_deep { 0 } else { options.max_iterations + options.max_iterations / FOR_ENDS };
     Some(settled(cores, state, boundary, way, met, status, for_ends))
 }
 
-/// What the expansion knows beside its polytope.
+/// The state of an expansion beside its polytope.
 struct Expansion<V: Vector> {
     /// The shortest way out that was found.
     way: WayOut<V>,
     is_curved: bool,
     tolerance: V::Scalar,
-    /// How wide the bracket may stay: as the tolerance, or as rounding along the way lets it be.
+    /// The width that the bracket may keep: the tolerance, or the rounding along the way.
     enough: V::Scalar,
     /// Whether directions may lean; not next after one whose support point was not beyond the facet.
     may_lean: bool,
-    /// Since when the bracket is as narrow as asked for.
+    /// Since when the bracket is as narrow as the options say.
     closed: Option<Closed<V::Scalar>>,
-    /// What GJK has met, where zero is not within the polytope.
+    /// The point that GJK has found, if zero is not within the polytope.
     met: Option<MetPoint<V>>,
 }
 
-/// What is left to do where the bracket is as narrow as asked for.
+/// The remaining work when the bracket is as narrow as the options say.
 enum Closing {
     /// It is so for the first time, and may become narrower.
     First,
@@ -175,7 +175,7 @@ impl<V: Vector> Expansion<V> {
         self.enough = self.tolerance.max(cores.rounding_along(way.u()));
     }
 
-    /// Whether the bracket down to `inner` is as narrow as asked for. NaN is so too.
+    /// Whether the bracket down to `inner` is as narrow as the options say. NaN is so too.
     fn is_closed(&self, inner: V::Scalar) -> bool {
         !(self.way.h - inner > self.enough)
     }
@@ -207,7 +207,8 @@ impl<V: Vector> Expansion<V> {
         Some(())
     }
 
-    /// Looks along the normal of the nearest facet, which is `inner` from zero. Whether there is more to look at.
+    /// Takes the support point along the normal of the nearest facet, which is `inner` from zero. Whether there is more
+    /// to do.
     fn grow(
         &mut self,
         cores: &mut Cores<'_, V>,
@@ -243,8 +244,7 @@ impl<V: Vector> Expansion<V> {
                 self.may_lean = false;
                 return Some(true);
             }
-            // The facet is of the boundary of K, and by the rounding of its plane farther in than the support value
-            // says.
+            // The facet is on the boundary of K, and by the rounding of its plane farther in than the support value.
             return Some(boundary.measure(nearest));
         }
         self.may_lean = self.is_curved;
@@ -255,7 +255,7 @@ impl<V: Vector> Expansion<V> {
     }
 }
 
-/// What an expansion knows where it has ended.
+/// The result of an expansion at its end.
 #[inline(always)]
 fn settled<V: Vector>(
     cores: &mut Cores<'_, V>,

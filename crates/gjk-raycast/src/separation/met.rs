@@ -19,7 +19,7 @@ pub(super) struct MetPoint<V: Vector> {
 }
 
 impl<V: Vector> MetPoint<V> {
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn new(cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
         state.ensure_measured();
         let (mut point, mut points, mut sum) = (V::ZERO, PointPair::default(), V::Scalar::ZERO);

@@ -1,9 +1,8 @@
-//! One search for how far apart two bodies are, or how deep in one another.
+//! The one search for the distance or depth of two bodies.
 //!
-//! All questions about two bodies at rest are readings of one answer, so that none of them can contradict another. The
-//! search has three means, in this order, and ends at the first that tells what is asked: GJK on the cores, a closer
-//! look at bodies near contact, and an expanding polytope. Those who ask for the depth have a fourth one before them,
-//! the closed form for two boxes.
+//! All questions about two bodies at rest take parts of one answer, so that they cannot contradict one another. The
+//! search has three means, in this order, and ends at the first that answers the question: GJK on the cores, a second
+//! measurement near contact, and an expanding polytope. For a depth, the closed form for two boxes comes before them.
 
 mod basin;
 mod boundary;
@@ -29,7 +28,7 @@ use crate::extra::{Extra, in_static};
 use crate::gjk::{End, Gjk};
 use crate::observer::Observer;
 use crate::{Distance, SignedDistance, SignedDistanceOptions, Status, SubAlgorithm};
-use cores::ClosedForm;
+use cores::{ClosedForm, WayOut};
 pub(crate) use cores::{Cores, Uncertainty, slack};
 pub(crate) use direct::direct;
 use expansion::{Expanded, expand};
@@ -39,20 +38,20 @@ pub(crate) use near_contact::{NearContact, is_near_contact, near_contact_of};
 pub(crate) use room::{FromContact, across_corners, look_after};
 use witness::Ends;
 
-/// What a question wants to know of two bodies, and when the search may stop.
+/// The question about two bodies, and when the search may stop.
 pub(crate) struct Wanted<V: Vector> {
     pub(crate) of_overlap: OfOverlap,
-    /// Where to begin and when to stop. What concerns the depth counts where one is looked for.
+    /// Where to begin and when to stop. Options of the depth only count if it is sought.
     pub(crate) options: SignedDistanceOptions<V>,
     /// How wide a bracket on the distance may stay, relative to it.
     pub(crate) tolerance: V::Scalar,
     pub(crate) sub_algorithm: SubAlgorithm,
-    /// What is asked where GJK does not decide.
+    /// The further means if GJK does not decide.
     pub(crate) extra: Extra<Closer<V>>,
 }
 
-/// The second and the third means of the search. Without them it answers what GJK knows.
-#[allow(clippy::type_complexity, reason = "it is said once")]
+/// The second and the third means of the search. Without them the answer is that of GJK.
+#[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct Closer<V: Vector> {
     look_near: fn(&mut Cores<'_, V>, &Wanted<V>, Option<&Gjk<V>>) -> bool,
     reach: fn(&mut Cores<'_, V>, &Wanted<V>, &mut Gjk<V>, End, &mut Observer<'_, V>) -> Separation<V>,
@@ -65,13 +64,13 @@ impl<V: Vector> Closer<V> {
 
 in_static!(Closer);
 
-/// What is asked of bodies that overlap.
+/// The question about bodies that overlap.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum OfOverlap {
-    /// No more than that they do. The depth is looked for where nothing else decides it.
+    /// Only whether they do. The depth is computed if nothing else decides it.
     Known,
     Depth,
-    /// The depth, and near contact no closer than the search itself leaves.
+    /// The depth, and near contact only as exactly as the search itself gives it.
     RoughDepth,
 }
 
@@ -81,13 +80,13 @@ impl<V: Vector> Wanted<V> {
         Self { of_overlap, options, tolerance: Scalar::ZERO, sub_algorithm: SubAlgorithm::Regions, extra }
     }
 
-    /// Whether more is asked of bodies that overlap.
+    /// Whether there is a further question about bodies that overlap.
     #[inline(always)]
     fn is_depth(&self) -> bool {
         self.of_overlap != OfOverlap::Known
     }
 
-    /// Whether the search is the one that any query would make.
+    /// Whether the search is the one of any query.
     fn is_plain(&self) -> bool {
         !self.is_depth()
             && self.options.axis.is_none()
@@ -96,10 +95,10 @@ impl<V: Vector> Wanted<V> {
     }
 }
 
-/// What is known of the cores; lengths in their unit.
+/// The result about the cores; lengths in their unit.
 pub(crate) struct Separation<V: Vector> {
-    /// The unit vector out of their difference from one closest point to the other, and how far that reaches along it:
-    /// minus their signed distance, or infinitely far where they certainly overlap and no depth was asked for.
+    /// The unit vector out of their difference from one closest point to the other, and the difference's support value
+    /// along it: minus their signed distance, or infinity if they certainly overlap and no depth was asked for.
     u: V,
     depth: V::Scalar,
     /// Bounds on the depth.
@@ -108,14 +107,14 @@ pub(crate) struct Separation<V: Vector> {
     /// The unit vector into the difference across which a plane proves the outer one.
     pub(crate) axis: V,
     points: PointPair<V>,
-    /// Whether the bodies have a point in common, to the error it is known to, where that is not told by the depth.
+    /// Whether the bodies have a point in common, to its own error, if the depth does not tell.
     overlap: Option<bool>,
     status: Status,
     unexpanded: usize,
 }
 
-/// What can be known of the cores, and of those that overlap by how much: both are compiled once for all who ask, so
-/// that who asks for no depth has no code for it.
+/// The separation of two cores, and their depth. Both are compiled once for all callers, so that a program without
+/// depths has no code for them.
 #[inline(never)]
 pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     cores: &mut Cores<'_, V>,
@@ -125,7 +124,7 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     debug_assert_eq!(IS_DEPTH, wanted.is_depth(), "what is asked of overlap");
     let (options, extra) = (&wanted.options, wanted.extra.get());
     if IS_DEPTH {
-        // Rounded cores are mostly apart, which takes a search to know.
+        // Rounded cores are mostly apart, which only a search can tell.
         let is_rounded = cores.radius() > Scalar::ZERO;
         if !is_rounded
             && let Some(known) = cores.closed_form(options.axis)
@@ -144,7 +143,7 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     let tells_all = |cores: &mut Cores<'_, V>, state: Option<&Gjk<V>>| {
         extra.is_some_and(|extra| (extra.look_near)(cores, wanted, state))
     };
-    // Where the closest points are known, there is nothing to search near contact.
+    // If the closest points are known, there is nothing to search near contact.
     let mut is_near = closest.is_some_and(|(_, v)| cores.is_near(v.length()));
     if is_near
         && tells_all(cores, None)
@@ -176,20 +175,20 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
             known.inner = known.inner.max(cores.room_within(state.simplex.points()));
         }
     } else {
-        // A simplex of full dimension has zero inside for certain, or a closer look would have been taken.
+        // A simplex of full dimension certainly has zero inside, or a second measurement would have been made.
         if is_known && is_full {
             (known.depth, known.inner) = (V::Scalar::infinity(), Scalar::ZERO);
         }
         known.overlap = (end != End::Stalled).then_some(end == End::Overlap);
     }
-    // Cores that no plane keeps apart are not known as well as they can be.
+    // If no plane keeps the cores apart, they can be measured more exactly.
     if !is_known && end != End::Separated {
         known.status = Status::Stalled;
     }
     known
 }
 
-/// What can be known of cores that overlap or nearly touch, after a search for the points that are closest.
+/// The separation of cores that overlap or nearly touch, after a search for their closest points.
 #[inline(never)]
 fn reach_closely<V: Vector>(
     cores: &mut Cores<'_, V>,
@@ -204,7 +203,7 @@ fn reach_closely<V: Vector>(
     let known = if let Some(known) = known {
         Separation::of_closed_form(known)
     } else {
-        // Half of what may be asked for is left for a second run.
+        // Half of the allowed support points is left for a second run.
         let may_repeat =
             end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
         if may_repeat && !cores.is_peeled() && cores.peel() {
@@ -217,12 +216,16 @@ fn reach_closely<V: Vector>(
         }
         let is_apart = end == End::Separated || !state.length.is_finite();
         let expanded = if is_apart { None } else { expand(cores, state, options, observer) };
+        // If the cores are apart after all, GJK's points are nearer than those of a facet.
+        let leads_out = |expanded: &&Expanded<V>| end == End::Overlap || !(expanded.way.h < Scalar::ZERO);
+        let known = match expanded.as_ref().filter(leads_out) {
+            Some(expanded) => Separation::of_expansion(expanded),
+            None => Separation::of_gjk(cores, state, end),
+        };
         match expanded {
-            Some(expanded) => Separation::of_expansion(cores, &expanded, state, end),
-            None => {
-                let known = Separation::of_gjk(cores, state, end);
-                Separation { status: if is_apart { known.status } else { Status::Stalled }, ..known }
-            }
+            Some(Expanded { way, .. }) => known.up_to(cores, state, way),
+            None if is_apart => known,
+            None => Separation { status: Status::Stalled, ..known },
         }
     };
     if wanted.is_depth() { known } else { known.with_common_points(cores, state) }
@@ -233,8 +236,8 @@ impl<V: Vector> Separation<V> {
     #[inline(always)]
     fn of_gjk(cores: &Cores<'_, V>, state: &mut Gjk<V>, end: End) -> Self {
         let MetPoint { points, reached, .. } = MetPoint::new(cores, state);
-        // From one closest point to the other; across the best plane where rounding may have made that up, and where
-        // rounded bodies overlap: the way between their cores is short then, and leans by the rounding.
+        // From one closest point to the other; or across the best plane, if rounding may have made up that vector, or
+        // rounded bodies overlap: the vector between their cores is short then, and leans by the rounding.
         let is_apart = state.length * cores.scale() > cores.radius();
         let direction = if is_apart && state.length > cores.noise() { state.normal } else { state.axis };
         let n = direction.unit().or_else(|| state.normal.unit()).unwrap_or_else(|| V::axis(0));
@@ -252,13 +255,13 @@ impl<V: Vector> Separation<V> {
         }
     }
 
-    /// By a look near contact. The points of the surfaces are between those of the cores, from which the plane may lean
-    /// by the root of the rounding.
+    /// By a measurement near contact. The points of the surfaces are between those of the cores, from which the plane
+    /// may lean by the root of the rounding.
     #[cold]
     fn of_near_contact(cores: &Cores<'_, V>, near: &NearContact<V>) -> Self {
         let &NearContact { ref frame, points, normal, gap, lower, upper, .. } = near;
         let between = (points.a - points.b + frame.offset).unit().unwrap_or(normal);
-        // Both cores may be without balls, which are in their radii then.
+        // Both cores may have lost their rolling balls, which are in their radii then.
         let Pair { core_a, core_b, .. } = &cores.pair;
         let aside = |whole: V::Scalar, part: V::Scalar| (normal * part - between * whole) * frame.per_unit;
         let radius = cores.radius() * frame.per_unit;
@@ -283,24 +286,23 @@ impl<V: Vector> Separation<V> {
         Self { u, depth, inner, outer, axis: -u, points, overlap: None, status: Status::Converged, unexpanded: 0 }
     }
 
-    /// By an expansion, after GJK had come to an end.
-    #[inline]
-    fn of_expansion(cores: &Cores<'_, V>, expanded: &Expanded<V>, state: &mut Gjk<V>, end: End) -> Self {
-        let &Expanded { way, ends, inner, status, unexpanded } = expanded;
+    /// By the ends of the way out that an expansion has found.
+    fn of_expansion(
+        &Expanded { way, ends: Ends { u, depth, points }, inner, status, unexpanded }: &Expanded<V>,
+    ) -> Self {
+        Self { u, depth, inner, outer: way.h, axis: -way.u(), points, overlap: None, status, unexpanded }
+    }
+
+    /// The same with the nearer one of the plane that ends a way out and the best one that GJK has come to.
+    fn up_to(self, cores: &Cores<'_, V>, state: &mut Gjk<V>, way: WayOut<V>) -> Self {
         let by_way = way.h + cores.error_along(way.u());
         // NaN is no bound.
         let plane = cores.best_plane(state).filter(|(outer, _)| *outer <= by_way);
         let (outer, axis) = plane.unwrap_or((by_way, -way.u()));
-        // Where the cores turn out to be apart, GJK's points are nearer than those of a facet.
-        if way.h < Scalar::ZERO && end != End::Overlap {
-            return Self { outer, axis, ..Self::of_gjk(cores, state, end) };
-        }
-        let Ends { u, depth, points } = ends;
-        Self { u, depth, inner, outer, axis, points, overlap: None, status, unexpanded }
+        Self { outer, axis, ..self }
     }
 
-    /// The same with the points that GJK has come to, where cores overlap and those are nearer to one another than the
-    /// ends of the way out.
+    /// The same with GJK's points, if cores overlap and those are nearer to one another than the ends of the way out.
     fn with_common_points(self, cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
         let MetPoint { point, points, .. } = MetPoint::new(cores, state);
         if point.norm() < self.depth { Self { points, ..self } } else { self }
@@ -312,7 +314,7 @@ impl<V: Vector> Separation<V> {
         -(self.depth * cores.scale()) - cores.radius()
     }
 
-    /// Bounds on it, and whether they are as near to one another as a look near contact leaves.
+    /// Bounds on it, and whether they are as near to one another as a measurement near contact leaves them.
     #[inline(always)]
     fn bounds(&self, cores: &Cores<'_, V>) -> (V::Scalar, V::Scalar, bool) {
         let (scale, radius) = (cores.scale(), cores.radius());
@@ -322,7 +324,7 @@ impl<V: Vector> Separation<V> {
         let lost = |length: V::Scalar| if length == Scalar::ZERO { length } else { least() };
         let lower = lower - (slack(lower, radius) + lost(self.outer));
         let upper = upper + (slack(upper, radius) + lost(self.inner));
-        // What is known near contact is known without the slack.
+        // A measurement near contact needs no slack.
         match &cores.near {
             Some(near) => {
                 let lower = lower.max(near.lower * scale - lost(near.lower));
@@ -333,7 +335,7 @@ impl<V: Vector> Separation<V> {
         }
     }
 
-    /// How the search ended, by what its bounds are worth.
+    /// The status of the search, by its bounds.
     #[inline(always)]
     fn status(&self, is_bounded: bool, is_narrow: bool) -> Status {
         match self.status {
@@ -343,7 +345,7 @@ impl<V: Vector> Separation<V> {
         }
     }
 
-    /// The points of both bodies between which the way out leads.
+    /// The points of both bodies at the ends of the way out.
     #[inline(always)]
     fn ends(&self, cores: &Cores<'_, V>) -> [V; 2] {
         let (PointPair { a, b }, scale, [from, to]) = (self.points, cores.scale(), cores.radii);
@@ -355,7 +357,7 @@ impl<V: Vector> Separation<V> {
     #[inline]
     pub(crate) fn signed_distance(&self, cores: &Cores<'_, V>) -> SignedDistance<V> {
         let (lower, upper, is_narrow) = self.bounds(cores);
-        // Numbers that are not finite, or contradict one another, are of a support map that is none, and bound nothing.
+        // Numbers that are not finite, or contradict one another, come from an invalid support map, and bound nothing.
         let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
         let infinity = V::Scalar::infinity();
         let (lower, upper) = if is_bounded { (lower, upper) } else { (-infinity, infinity) };
@@ -376,12 +378,12 @@ impl<V: Vector> Separation<V> {
         }
     }
 
-    /// The distance, which is zero where the bodies overlap.
+    /// The distance, which is zero if the bodies overlap.
     #[inline]
     pub(crate) fn distance(&self, cores: &Cores<'_, V>) -> Distance<V> {
         let zero = V::Scalar::ZERO;
         let (lower, upper, is_narrow) = self.bounds(cores);
-        // The support points of a shape that is none may contradict one another, or be no numbers: nothing is known.
+        // The support points of an invalid shape may contradict one another, or be no numbers: nothing is known.
         let is_bounded = lower <= upper && upper.is_finite();
         let (lower, upper) = match is_bounded {
             true if self.inner >= zero => (zero, zero),
@@ -408,7 +410,7 @@ impl<V: Vector> Separation<V> {
         }
     }
 
-    /// Points of both bodies that are one but for rounding: between the points of their cores, which are no farther
+    /// Points of both bodies that coincide but for rounding: between the points of their cores, which are no farther
     /// apart than both radii.
     fn common_points(&self, cores: &Cores<'_, V>) -> [V; 2] {
         let (scale, radius, Pair { core_a, core_b, .. }) = (cores.scale(), cores.radius(), &cores.pair);

@@ -9,7 +9,7 @@ use crate::symmetric::{Across, Symmetric, axes_across, dot};
 /// The largest tangent of an angle to turn by.
 const LARGEST: f64 = 0.5;
 
-/// Two support points are of one smooth piece if the curvature at one foretells the other but for this part.
+/// Two support points are of one smooth piece if the curvature at one predicts the other but for this part.
 const FORETOLD: f64 = 0.25;
 
 /// How far past the fold a step leads, as a part of the square of the angle between both pieces.
@@ -77,7 +77,7 @@ impl<V: Vector> Piece<V> {
         SeenAlong { slope: (e.dot(point), f.dot(point)), value, hessian }
     }
 
-    /// How far a support point is from what this piece foretells along its direction, as a part of its distance from
+    /// How far a support point is from what this piece predicts along its direction, as a part of its distance from
     /// the piece's own point; infinite where it is too far around.
     pub(super) fn surprise(&self, vertex: &Vertex<V>) -> V::Scalar {
         let cosine = vertex.along.dot(self.n);
@@ -135,7 +135,7 @@ impl<V: Vector> Piece<V> {
     ///
     /// of which the second gives `δ` along `e`, and the first what it is across.
     ///
-    /// What is foretold of a piece is off by the cube of the angle to where it was seen. So the step leads past the
+    /// What is predicted of a piece is off by the cube of the angle to where it was seen. So the step leads past the
     /// fold by a part of the angle's square, onto the piece that is to be `seen` again.
     pub(super) fn step_along_fold(&self, other: &Self, seen: FoldSide) -> Option<V> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);

@@ -1,5 +1,5 @@
-//! How deep bodies are in one another at least, without a look at all of the boundary: a ball about zero within a few
-//! points of their difference.
+//! A lower bound on the depth of two bodies, without their whole boundary: a ball about zero within a few points of
+//! their difference.
 
 use core::array;
 
@@ -19,37 +19,36 @@ pub(crate) struct FromContact<V: Vector> {
     /// The unit vector into the difference. Against it the vector is no longer than `along`, and not along it.
     pub(crate) n: V,
     pub(crate) along: V::Scalar,
-    /// How long the vector is at most across that, or what is left of it.
+    /// A bound on its length across that direction.
     pub(crate) across: V::Scalar,
-    /// How long it is at most.
+    /// A bound on its length.
     pub(crate) length: V::Scalar,
 }
 
 impl<V: Vector> FromContact<V> {
-    /// How far it reaches along a unit vector.
+    /// A bound on its component along a unit vector.
     fn reach(&self, u: V) -> V::Scalar {
         let part = self.along * (-self.n.dot(u)).max(V::Scalar::ZERO) + roundings(16.0, self.along) + self.across;
         part.min(self.length)
     }
 }
 
-/// What is known of two bodies, one of which has gone on from near contact; lengths in the world's unit.
+/// The result about two bodies, one of which has moved on from near contact; lengths in the world's unit.
 pub(crate) struct After<V: Vector> {
-    /// How far apart they are along an axis at least, a unit vector from the second body to the first.
+    /// A lower bound on their distance along an axis, a unit vector from the second body to the first.
     pub(crate) lower: V::Scalar,
     pub(crate) axis: V,
-    /// How many times the vector from contact is in the difference for certain; not positive where zero may not be.
+    /// How many times the vector from contact is certainly in the difference; not positive if zero may not be.
     pub(crate) times: V::Scalar,
     pub(crate) iterations: usize,
 }
 
-/// Looks at bodies after contact, which are known where they are to `astray`. How deep they are is told by the points
-/// of the difference nearest to those at a distance `aside` from zero along the normal at contact and across it, both
-/// ways.
+/// Measures bodies after contact, whose places are known to `astray`. The points of the difference nearest to those
+/// at a distance `aside` from zero along the normal at contact and across it, both ways, bound the depth.
 ///
-/// These are the corners of an octahedron, which is in the difference with all that is within. Under a plane across the
-/// normal its corner is at the plane; beside an edge or an apex, too, the corners that would be outside are on the
-/// boundary.
+/// These are the corners of an octahedron, which is in the difference with all of its inside. Under a plane across
+/// the normal its corner is at the plane; beside an edge or an apex, too, the corners that would be outside are on
+/// the boundary.
 #[cold]
 #[inline(never)]
 pub(crate) fn look_after<V: Vector>(
@@ -65,7 +64,7 @@ pub(crate) fn look_after<V: Vector>(
     let frame = Frame::new(&mut pair, offset, size);
     let mut state = begin(&pair, &frame, size, max_iterations);
     state.ensure_measured();
-    // Where the closest points are known at once, no plane is yet.
+    // If the closest points are known at once, there is no plane yet.
     if state.length > frame.radius && !state.lower.is_finite() {
         let _ = go_on(&mut state, &mut pair, &frame, max_iterations);
     }
@@ -106,8 +105,8 @@ pub(crate) fn look_after<V: Vector>(
     After { lower, axis: state.axis.unit().unwrap_or(from.n), times, iterations }
 }
 
-/// The corners of each face of an octahedron, given both ends of its axes, or of a square: all in the order in which
-/// one sees them turn the same way from outside, where it is convex.
+/// The corners of each face of an octahedron, given both ends of its axes, or of a square: all in the same
+/// orientation as seen from outside, if it is convex.
 fn faces_of_octahedron<V: Vector>(ends: &[[V; 2]; 3]) -> impl Iterator<Item = [V; MAX_POINTS]> {
     (0..1_usize << V::DIM).map(|side| {
         let mut corners: [V; MAX_POINTS] =
@@ -119,20 +118,20 @@ fn faces_of_octahedron<V: Vector>(ends: &[[V; 2]; 3]) -> impl Iterator<Item = [V
     })
 }
 
-/// The same of the simplex with these corners, one more than there are dimensions.
+/// The same for the simplex with these corners, one more than there are dimensions.
 pub(crate) fn faces_of_simplex<V: Vector>(corners: &[V; MAX_POINTS]) -> impl Iterator<Item = [V; MAX_POINTS]> {
     let faces: &[[usize; 3]] =
         if V::DIM == 2 { &[[0, 1, 2], [1, 2, 0], [2, 0, 1]] } else { &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] };
     faces.iter().map(|face| array::from_fn(|i| corners[face[i % 3]]))
 }
 
-/// How many times a set about zero is within a polytope which has these faces, if that is wrong along a unit vector by
-/// an error; not positive where zero may be outside. The set has a reach along a unit vector: one, where the radius of
-/// a ball is asked for.
+/// How many times a set about zero fits into a polytope with these faces, given the polytope's error along a unit
+/// vector; not positive if zero may be outside. The set is given by its support value along a unit vector: one for
+/// the radius of a ball.
 ///
-/// Where zero is behind all faces, or before all of them, the cones from zero to the faces fill the space, and each is
-/// in the polytope as far as the plane of its face is away. If all corners are wrong by less than that, zero is still
-/// inside, and so is what is behind all planes.
+/// If zero is behind all faces, or before all of them, the cones from zero to the faces fill the space, and each is
+/// in the polytope up to the plane of its face. If all corners are wrong by less than that distance, zero is still
+/// inside, and so are all points behind all planes.
 pub(crate) fn room_around_zero<V: Vector>(
     faces: impl Iterator<Item = [V; MAX_POINTS]>,
     error: impl Fn(V) -> V::Scalar,
@@ -141,7 +140,7 @@ pub(crate) fn room_around_zero<V: Vector>(
     let (mut sides, mut is_solid) = ([V::Scalar::infinity(); 2], false);
     for corners in faces {
         let (normal, wrong) = across_corners(&corners);
-        // Of corners that are one the faces beside it are none.
+        // If corners coincide, the faces beside them are degenerate.
         if normal == V::ZERO {
             continue;
         }
@@ -161,8 +160,8 @@ pub(crate) fn room_around_zero<V: Vector>(
     if is_solid { room } else { V::Scalar::ZERO }
 }
 
-/// A vector across the first points, as many as there are dimensions; and what its product with another is wrong by,
-/// relative to the other's length.
+/// A vector across the first points, as many as there are dimensions; and the error of its product with another
+/// vector, relative to the other's length.
 ///
 /// In space, with `u = ε/2`, both edges are wrong by `u`, and a coordinate of their product is a difference of
 /// products: `4u·√3` of the product of the lengths. The scalar product loses `3u`.

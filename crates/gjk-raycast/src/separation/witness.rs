@@ -1,4 +1,4 @@
-//! The points of two cores between which the shortest way out leads.
+//! The points of two cores at the ends of the shortest way out.
 
 use convex_support::{Scalar, Vector};
 
@@ -9,10 +9,10 @@ use crate::body::PointPair;
 use crate::gjk::Gjk;
 use crate::simplex::project;
 
-/// Facets that are walked over at most.
+/// The most facets of a walk.
 const MAX_WALK: usize = 64;
 
-/// Points of both cores, which are as far apart as the way out is long.
+/// Points of both cores whose distance is the length of the way out.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ends<V: Vector> {
     /// The unit vector out of the difference of the cores from one point to the other, and how far it is between them.
@@ -21,21 +21,21 @@ pub(super) struct Ends<V: Vector> {
     pub(super) points: PointPair<V>,
 }
 
-/// The points of both cores whose difference is the end `h·u` of the way out, which is corrected where it has none.
+/// The points of both cores whose difference is the end `h·u` of the way out, which is corrected if it has none.
 ///
-/// Where `h` is least among directions near `u`, the ball of radius `h` about zero touches the plane across `u` at a
+/// If `h` is least among directions near `u`, the ball of radius `h` about zero touches the plane across `u` at a
 /// point of the boundary, which is the end. If the boundary is smooth there, that is the support point. If it has a
 /// face or an edge, the end is a weighted sum of support points: of the corners of the facet that the way leads
-/// through, where these are of that face, and else of those that GJK comes to from there, which looks for the point of
-/// the difference nearest to the end. Weighted sums with no negative weight are in the cores whatever they come to, and
-/// what they miss the end by is split between both only where it is the rounding of the search.
+/// through, if these are of that face, and otherwise of those that GJK finds from there, which searches for the point
+/// of the difference nearest to the end. Weighted sums with no negative weight are in the cores in any case. Their
+/// distance from the end is split between both only if it is the rounding of the search.
 ///
 /// If it is more, the way is not at the bottom of a basin yet, and its end is outside the difference by some `δ`. The
 /// plane through the point nearest to the end, across the unit vector `n` from there to it, supports the difference,
-/// and is nearer to zero by more than that: `h(n) = n·(h·u − δ·n) ≤ h − δ`. So it is the next way. Of an edge or a face
-/// the plane is known better than the short vector from it, by what is left of `u` across it. Where no lower way is
+/// and is nearer to zero by more than that: `h(n) = n·(h·u − δ·n) ≤ h − δ`. So it is the next way. For an edge or a
+/// face the plane is more accurate than the short vector from it, by the part of `u` across it. If no lower way is
 /// found, as with no support points left, the way ends at the nearest point, whose distance from zero is between the
-/// bounds. `None` where that point is on no side of zero that the way leads to.
+/// bounds. `None` if that point is on no side of zero that the way leads to.
 pub(super) fn ends<V: Vector>(
     cores: &mut Cores<'_, V>,
     boundary: &Boundary<V>,
@@ -83,8 +83,8 @@ pub(super) fn ends<V: Vector>(
     }
 }
 
-/// The point of the difference nearest to a `target` outside it or on its boundary, as seen from there: by the facet
-/// beside it, and if that is farther than rounding, by GJK.
+/// The point of the difference nearest to a `target` outside it or on its boundary, relative to the target: by the
+/// facet beside it, and if that is farther than rounding, by GJK.
 pub(super) fn nearest_to<V: Vector>(
     cores: &mut Cores<'_, V>,
     boundary: &Boundary<V>,
@@ -96,8 +96,8 @@ pub(super) fn nearest_to<V: Vector>(
     cores.nearest_to(target, corners[..V::DIM].iter().map(|&corner| boundary.vertex(corner)), max_iterations)
 }
 
-/// The facet that a point is above, or that it is nearly above: that comes next across the ridges that the point's foot
-/// is beyond, as the coordinates of the foot say.
+/// The facet that a point is above, or nearly above: the next one across the ridges that the point's projection is
+/// beyond, as its coordinates say.
 fn beside<V: Vector>(boundary: &Boundary<V>, from: usize, point: V) -> usize {
     let mut facet = from;
     for _ in 0..MAX_WALK {

@@ -8,17 +8,17 @@ use crate::simplex::{johnson::johnson, signed_volumes::signed_volumes};
 
 /// How the point of a simplex closest to zero, and the smallest face that contains it, are found.
 ///
-/// All share the orthogonal projection that computes the point once its face is known, and the back-up where signs
-/// are inconsistent; they differ in how they find the face. All but the default are there with the feature `paper`.
+/// All variants share the orthogonal projection that computes the point once its face is known, and the back-up for
+/// inconsistent signs; they differ in how they find the face. All but the default need the feature `paper`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SubAlgorithm {
-    /// The fastest: it looks only at the faces that the newest point is a corner of, and at every face where that
-    /// leaves a doubt. Casts look at every face at once.
+    /// The fastest: it tests only the faces with the newest point as a corner, and every face if this leaves a doubt.
+    /// Casts test every face at once.
     #[default]
     Regions,
-    /// The most robust: zero is projected on every face, and of the faces that contain the projection the nearest is
+    /// The most robust: zero is projected on every face, and the nearest of the faces that contain their projection is
     /// taken.
     #[cfg(feature = "paper")]
     NearestFace,
@@ -32,7 +32,7 @@ pub enum SubAlgorithm {
 
 impl SubAlgorithm {
     /// The closest point of the points, in a space of `dimension` dimensions: that of the vectors, or one less for
-    /// points seen along a ray, where only [`nearest_face`] applies.
+    /// points projected along a ray, where only [`nearest_face`] applies.
     pub(crate) fn closest<V: Vector>(self, points: &[V], dimension: usize) -> Option<Closest<V>> {
         match self {
             #[cfg(feature = "paper")]

@@ -81,8 +81,8 @@ impl<const N: usize> Enclosing<N> {
 ///
 /// # Errors
 /// [`EnclosingError::Empty`] without points, [`NonFinite`](EnclosingError::NonFinite) for NaN and infinities,
-/// [`Flat`](EnclosingError::Flat) where the points span no volume (unless [`FlatPolicy::AffineHull`] is asked for),
-/// [`OutOfRange`](EnclosingError::OutOfRange) where `f64` cannot hold the answer,
+/// [`Flat`](EnclosingError::Flat) if the points span no volume (unless the option is [`FlatPolicy::AffineHull`]),
+/// [`OutOfRange`](EnclosingError::OutOfRange) if `f64` cannot hold the answer,
 /// [`InvalidEpsilon`](EnclosingError::InvalidEpsilon) and
 /// [`InvalidFlatTolerance`](EnclosingError::InvalidFlatTolerance) for options out of their range.
 ///
@@ -104,10 +104,10 @@ pub fn enclosing<P: Into<[f64; N]> + Copy + Sync, const N: usize>(
     enclosing_with(points, options, |_| {})
 }
 
-/// [`enclosing`](enclosing()), showing every iterate to `observer`.
+/// [`enclosing`](enclosing()) with an `observer` that sees every iterate.
 ///
 /// # Errors
-/// As [`enclosing`](enclosing()).
+/// Those of [`enclosing`](enclosing()).
 pub fn enclosing_with<P: Into<[f64; N]> + Copy + Sync, const N: usize>(
     points: &[P],
     options: EnclosingOptions,

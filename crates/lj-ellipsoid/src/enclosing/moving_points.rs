@@ -1,4 +1,4 @@
-//! Points that come, go and move, and the enclosing ellipsoid that follows them.
+//! Points that are added, removed and moved, and the enclosing ellipsoid that follows them.
 
 use crate::ellipsoid::radius_at_most;
 use crate::enclosing::frame::Frame;
@@ -13,13 +13,13 @@ use crate::points::PointSlice;
 
 /// Points with their minimum-volume enclosing ellipsoid, kept up to date when points are added, removed or moved.
 ///
-/// A change that cannot touch the ellipsoid costs no solve: a point added inside, or removed or moved inside without
-/// having carried weight, leaves the ellipsoid and its certificate as they are. Otherwise the next
+/// A change that cannot affect the ellipsoid costs no solve: a point added inside, or a point without weight removed
+/// or moved inside, leaves the ellipsoid and its certificate as they are. Otherwise the next
 /// [`enclosing`](Self::enclosing) starts from the old ellipsoid and its weights, which saves passes of a cold start.
 ///
-/// Whether the points are flat is decided as in [`enclosing()`](crate::enclosing()). An ellipsoid within an affine hull
-/// ([`FlatPolicy::AffineHull`](crate::FlatPolicy::AffineHull)), or one so thin that rounding might count for flatness,
-/// says nothing about points across it, so that after it every change is solved.
+/// Whether the points are flat is decided as in [`enclosing()`](crate::enclosing()). If the ellipsoid is within an
+/// affine hull ([`FlatPolicy::AffineHull`](crate::FlatPolicy::AffineHull)), or so thin that rounding might make it
+/// flat, it says nothing about points across it, so that after it every change is solved.
 ///
 /// # Examples
 /// ```
@@ -52,7 +52,7 @@ pub struct MovingPoints<const N: usize> {
 }
 
 impl<const N: usize> MovingPoints<N> {
-    /// Takes the points; nothing is computed yet. They may be none at first.
+    /// Takes the points, perhaps none at first; nothing is computed yet.
     ///
     /// # Errors
     /// [`EnclosingError::NonFinite`]; [`EnclosingError::InvalidEpsilon`] and [`EnclosingError::InvalidFlatTolerance`]
@@ -78,7 +78,7 @@ impl<const N: usize> MovingPoints<N> {
         self.solves
     }
 
-    /// Adds a point and answers its index.
+    /// Adds a point and returns its index.
     ///
     /// # Errors
     /// [`EnclosingError::NonFinite`]; then nothing changes.
@@ -91,7 +91,7 @@ impl<const N: usize> MovingPoints<N> {
         Ok(index)
     }
 
-    /// Removes point `index` and answers it; the last point takes its index.
+    /// Removes point `index` and returns it; the last point takes its index.
     ///
     /// # Panics
     /// If there is no such point.
@@ -109,7 +109,7 @@ impl<const N: usize> MovingPoints<N> {
         point
     }
 
-    /// Moves point `index` to `point` and answers where it was.
+    /// Moves point `index` to `point` and returns its old place.
     ///
     /// # Errors
     /// [`EnclosingError::NonFinite`]; then nothing changes.
@@ -131,7 +131,7 @@ impl<const N: usize> MovingPoints<N> {
     /// The enclosing ellipsoid of the points as they are now.
     ///
     /// # Errors
-    /// As [`enclosing`](crate::enclosing()).
+    /// Those of [`enclosing`](crate::enclosing()).
     pub fn enclosing(&mut self) -> Result<&Enclosing<N>, EnclosingError> {
         let answer = match self.answer.take() {
             Some(answer) if self.current => answer,

@@ -1,4 +1,4 @@
-//! What every method on the enclosing ellipsoid is given, and who watches it.
+//! The input of every method for the enclosing ellipsoid, and observers.
 
 use crate::options::EnclosingOptions;
 use crate::points::Points;
@@ -22,7 +22,7 @@ pub struct EnclosingIterate<'a> {
 /// reports.
 pub(crate) type Observer<'a> = dyn FnMut(EnclosingIterate<'_>) + 'a;
 
-/// What every method is given.
+/// The input of every method.
 pub(crate) struct Problem<'a, P: Points> {
     pub(crate) points: &'a P,
     /// The dimension of their affine hull.

@@ -1,7 +1,7 @@
 //! The maximum-volume ellipsoid inside the convex hull of points.
 //!
-//! The points are first brought to where their enclosing ellipsoid is the unit ball: there the hull lies between the
-//! balls of radius 1/N and 1 (John), so facets and slacks are of unit size whatever the condition of the points.
+//! The points are first mapped so that their enclosing ellipsoid is the unit ball: there the hull lies between the
+//! balls of radius 1/N and 1 (John), so that facets and slacks are of unit size whatever the condition of the points.
 
 use crate::enclosing;
 use crate::error::{EnclosingError, InscribedError};
@@ -22,10 +22,10 @@ const COPLANAR: f64 = 512.0;
 
 /// The ellipsoid of greatest volume inside the convex hull of `points`, in two or three dimensions.
 ///
-/// The answer's `weights` count facets of the hull, in no particular order.
+/// The indices of the answer's `weights` count facets of the hull, in no particular order.
 ///
 /// # Errors
-/// [`InscribedError::Flat`] where the hull has no interior, [`InscribedError::HullDimension`] unless N is 2 or 3,
+/// [`InscribedError::Flat`] if the hull has no interior, [`InscribedError::HullDimension`] unless N is 2 or 3,
 /// [`InscribedError::NonFinite`] and [`InscribedError::Empty`] for bad input.
 ///
 /// # Examples
@@ -46,10 +46,10 @@ pub fn inscribed_in_hull<P: Into<[f64; N]> + Copy + Sync, const N: usize>(
     inscribed_in_hull_with(points, options, |_| {})
 }
 
-/// [`inscribed_in_hull`](inscribed_in_hull()), showing every iterate to `observer`.
+/// [`inscribed_in_hull`](inscribed_in_hull()) with an `observer` that sees every iterate.
 ///
 /// # Errors
-/// As [`inscribed_in_hull`](inscribed_in_hull()).
+/// Those of [`inscribed_in_hull`](inscribed_in_hull()).
 pub fn inscribed_in_hull_with<P: Into<[f64; N]> + Copy + Sync, const N: usize>(
     points: &[P],
     options: InscribedOptions,

@@ -44,7 +44,7 @@ pub struct HalfSpace<const N: usize> {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Inscribed<const N: usize> {
-    /// The ellipsoid: centre, axes and semi-axes as they are, it is proved to be inside. Its
+    /// The ellipsoid, proved to be inside with the returned centre, axes and semi-axes. Its
     /// [`support_value`](Ellipsoid::support_value) along the normal of every given half-space is at most the offset.
     pub ellipsoid: Ellipsoid<N>,
     /// A certified bound: ln det X of `ellipsoid` exceeds that of the true optimum by at most this. It is twice the
@@ -80,14 +80,14 @@ impl<const N: usize> Inscribed<N> {
 
 /// The ellipsoid of greatest volume inside the intersection of `halfspaces`.
 ///
-/// Normals of any length, redundant and repeated half-spaces are fine, and so are thin bodies, turned as they may be.
-/// What limits them is the answer: the axes of the ellipsoid are rounded to doubles, so that of a turned body some
-/// 1e-16 of its length is lost of its thickness, and a centre far from the origin loses as much of its own distance.
-/// The gap says how much that is.
+/// Normals of any length, redundant and repeated half-spaces are fine, and so are thin bodies in any orientation. The
+/// rounding of the answer limits thin bodies: rounding the axes of the ellipsoid to doubles takes some 1e-16 of a
+/// turned body's length from its thickness, and a centre far from the origin loses as much of its own distance. The
+/// gap includes this loss.
 ///
 /// # Errors
-/// [`InscribedError::Unbounded`] and [`InscribedError::EmptyInterior`] where there is no such ellipsoid;
-/// [`InscribedError::NearlyUnbounded`] and [`InscribedError::NearlyEmpty`] where doubles do not tell it;
+/// [`InscribedError::Unbounded`] and [`InscribedError::EmptyInterior`] if there is no such ellipsoid;
+/// [`InscribedError::NearlyUnbounded`] and [`InscribedError::NearlyEmpty`] if doubles do not tell;
 /// [`InscribedError::ZeroNormal`], [`InscribedError::NonFinite`] and [`InscribedError::Empty`] for bad input,
 /// [`InscribedError::InvalidEpsilon`] for a bad option.
 ///
@@ -114,10 +114,10 @@ pub fn inscribed<const N: usize>(
     inscribed_with(halfspaces, options, |_| {})
 }
 
-/// [`inscribed`](inscribed()), showing every iterate to `observer`.
+/// [`inscribed`](inscribed()) with an `observer` that sees every iterate.
 ///
 /// # Errors
-/// As [`inscribed`](inscribed()).
+/// Those of [`inscribed`](inscribed()).
 pub fn inscribed_with<const N: usize>(
     halfspaces: &[HalfSpace<N>],
     options: InscribedOptions,

@@ -1,4 +1,4 @@
-//! Who watches the iterates, and what they show.
+//! Observers, and the iterates that they see.
 
 /// What an observer of [`inscribed_with`](crate::inscribed_with) sees after every Newton step.
 #[derive(Clone, Copy, Debug)]

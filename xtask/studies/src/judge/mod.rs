@@ -27,6 +27,11 @@ pub(crate) struct Scope {
     /// Write the questions as a query file, and end.
     #[arg(long, value_name = "FILE")]
     questions: Option<PathBuf>,
+    /// Write parry's answers to a file of questions, in this precision, and end: `benches/peers/museum_today.py` reads
+    /// them.
+    #[cfg(feature = "peers")]
+    #[arg(long, value_names = ["PRECISION", "QUESTIONS", "ANSWERS"], num_args = 3)]
+    parry: Option<Vec<String>>,
     /// How many questions of each kind are asked of each shape or pair of shapes of the workloads.
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u16).range(2..=2000))]
     each: u16,
@@ -55,6 +60,12 @@ fn judge(scope: &Scope) -> Result<bool, String> {
     let questions = questions::all(usize::from(scope.each));
     if let Some(file) = &scope.questions {
         return write_questions(file, &questions).map(|()| true);
+    }
+    #[cfg(feature = "peers")]
+    if let Some([precision, file, answers]) = scope.parry.as_deref() {
+        let questions = questions::of_file(Path::new(file))?;
+        let witness = if precision == "f32" { parry::single::witness } else { parry::double::witness };
+        return witness(&questions, |_| ()).write(&questions, Path::new(answers)).map(|()| true);
     }
     begin_progress(1, "judge");
     let witnesses = witnesses(scope, &questions)?;

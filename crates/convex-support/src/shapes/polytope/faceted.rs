@@ -23,12 +23,12 @@ use crate::{
 /// middle.
 pub(crate) type Planes<S> = [[S; WIDTH]; 4];
 
-/// The convex hull of points both ways: by its vertices, as a [`Polytope`], and by the half-spaces of its facets.
+/// The convex hull of points in two forms: by its vertices, as a [`Polytope`], and by the half-spaces of its facets.
 ///
-/// It is for lines: a ray cast clips a ray by every facet, and [`line_crossing`](crate::line_crossing) tells where it
-/// leaves, too. That takes time proportional to the number of facets. Up to about a hundred facets it takes less time
-/// than a ray cast by support points, which needs no facets and whose time hardly grows (measured: docs/comparison.md,
-/// W1).
+/// It is for lines: a ray cast clips a ray by every facet, and [`line_crossing`](crate::line_crossing) also tells
+/// where it leaves. This takes time proportional to the number of facets. Up to about a hundred facets it takes less
+/// time than a ray cast by support points, which needs no facets and whose time hardly grows (measured:
+/// docs/comparison.md, W1).
 ///
 /// ```
 /// use convex_support::{Faceted, glam::DVec3, line_crossing};
@@ -52,16 +52,16 @@ pub struct Faceted<V: Vector> {
     polytope: Polytope<V>,
     planes: Vec<Planes<V::Scalar>>,
     count: usize,
-    /// What is behind all planes by more than this is in the hull of the points as they are seen from the middle;
-    /// infinite where that is not known.
+    /// Every point behind all planes by more than this is in the hull of the points relative to the middle; infinite if
+    /// this is not known.
     uncut: V::Scalar,
 }
 
 impl<V: Vector> Faceted<V> {
-    /// The convex hull of the points, as of [`Polytope::hull_of`], with its facets.
+    /// The convex hull of the points, as [`Polytope::hull_of`] finds it, with its facets.
     ///
     /// # Errors
-    /// As [`Polytope::new`].
+    /// Those of [`Polytope::new`].
     pub fn hull_of(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
         FromPoints::new(points).map(with_facets)
     }
@@ -101,9 +101,9 @@ impl<V: Vector> Faceted<V> {
         self.polytope.points()
     }
 
-    /// The half-spaces whose intersection the set is: unit outward normals `n` and how far the set reaches along them,
-    /// so that it is all `x` with `n·x ≤ b`, to rounding of its size. Triangles in one plane count once; a flat set has
-    /// facets on both sides and around it.
+    /// The half-spaces whose intersection is the set: unit outward normals `n` with the support values `b`, so that the
+    /// set is all `x` with `n·x ≤ b`, to rounding of its size. Triangles in one plane count once; a flat set has facets
+    /// on both sides and around it.
     pub fn half_spaces(&self) -> impl ExactSizeIterator<Item = (V, V::Scalar)> + '_ {
         (0..self.count).map(|i| {
             let (n, reach): (V, _) = facet(&self.planes, i);

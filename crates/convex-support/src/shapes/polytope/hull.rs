@@ -13,15 +13,15 @@ use crate::{Scalar, Vector, compiled_once};
 const SCANNED: usize = 8;
 
 impl<V: Vector> Polytope<V> {
-    /// The convex hull of the points, reduced to its vertices, with the edges between them where there are many.
+    /// The convex hull of the points, reduced to its vertices, with the edges between them if there are many.
     ///
-    /// For point clouds and meshes of any size: duplicates, points inside, on faces and on edges are sorted out by
-    /// exact predicates, and a flat cloud becomes a flat polygon. Takes `O(n log n)` time for most inputs, about 0.1 s
+    /// For point clouds and meshes of any size: exact predicates sort out duplicates, points inside, on faces and on
+    /// edges, and a flat cloud becomes a flat polygon. It takes `O(n log n)` time for most inputs, about 0.1 s
     /// for 60,000 points. [`points`](Self::points) are then the vertices, in the order given; a few that lie on a face
     /// without being a corner of it may be among them.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// Those of [`new`](Self::new).
     pub fn hull_of(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
         FromPoints::new(points).map(|found| found.polytope)
     }

@@ -46,14 +46,14 @@ pub(crate) use lanes::WIDTH as PLANES;
 ///
 /// # Speed
 /// [`new`](Self::new) keeps the points as they are and scans all of them for each support point, several at a time.
-/// With the feature `hull`, `Polytope::hull_of` finds the vertices and edges of the hull first. If there are more than
-/// eight vertices, it also finds, for each cell of a grid of directions, those that can be farthest along a direction
-/// of the cell. A support point then takes a look at a handful of vertices, however many there are. In a cell that has
-/// too many, it climbs along the edges instead, from a vertex of the cell or from the last answer ([`Hint`]).
+/// With the feature `hull`, `Polytope::hull_of` finds the vertices and edges of the hull first. If there are more
+/// than eight vertices, it also finds, for each cell of a grid of directions, those that can be farthest along a
+/// direction of the cell. A support point then tests a handful of vertices, however many there are. In a cell that
+/// has too many, it climbs along the edges instead, from a vertex of the cell or from the last answer ([`Hint`]).
 ///
 /// # Ties
-/// If several points reach equally far along a direction, to the last bit of the dot products computed relative to
-/// the middle, the answer is the first of them in [`points`](Self::points), unless it was found by climbing.
+/// If several points are equally far along a direction, to the last bit of the dot products computed relative to the
+/// middle, the answer is the first of them in [`points`](Self::points), unless it was found by climbing.
 #[derive(Clone, PartialEq)]
 pub struct Polytope<V: Vector> {
     points: Vec<V>,
@@ -70,7 +70,7 @@ impl<V: Vector> fmt::Debug for Polytope<V> {
     }
 }
 
-/// So many points are looked at as quickly as edges are followed.
+/// Up to this many points are scanned as quickly as edges are followed.
 const LOOKED_AT: usize = 128;
 
 /// How the farthest of the points, relative to the middle, is found.
@@ -85,7 +85,7 @@ enum Search<V: Vector> {
 }
 
 impl<V: Vector> Polytope<V> {
-    /// The convex hull of the points. Every support point takes a look at each of them.
+    /// The convex hull of the points. Every support point scans all of them.
     ///
     /// # Errors
     /// [`InvalidShape::NoPoints`], [`InvalidShape::NonFinite`] naming the index of the point that is not finite, or
@@ -131,7 +131,7 @@ impl<V: Vector> Polytope<V> {
         }
     }
 
-    /// The points: as given, or the vertices of their hull where it was asked for.
+    /// The points: as given, or the vertices of their hull for `Polytope::hull_of`.
     #[must_use]
     pub fn points(&self) -> &[V] {
         &self.points

@@ -1,7 +1,7 @@
 //! The paper's Algorithm 3, for bodies that are a core swept by a ball.
 //!
-//! Its loop moves a point `x` along the ray up to one supporting plane of the body after another, and finds the planes
-//! by GJK steps towards `x`. Three things are added to it; `docs/ray-cast.md` derives them.
+//! Its loop moves a point `x` along the ray up to one supporting plane of the body after another, and finds the
+//! planes by GJK steps towards `x`. Three things are added; `docs/ray-cast.md` derives them.
 //!
 //! - As soon as the simplex of support points is pierced by the ray, the hit is bracketed: behind the last plane, and
 //!   before the point where the ray enters the simplex. From then on, the simplex is refined where it is pierced
@@ -52,8 +52,8 @@ pub(super) fn algorithm_3<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Ray
             nearing = Progress::new();
         }
         if !simplex.points().contains(&point) {
-            // All points of a simplex are kept where x is in it and yet far from it, which only the points of a shape
-            // that is none tell.
+            // A simplex in which x lies and is yet far from it keeps all of its points; only an invalid shape has such
+            // points.
             if simplex.points().len() > V::DIM {
                 return Err(Stop::InDoubt);
             }
@@ -74,7 +74,7 @@ pub(super) fn algorithm_3<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Ray
             // x is in the body, or no farther from it than rounding.
             simplex.retain(face, weights);
             let contact = bracket.close_at_low(to_x, simplex.weighted_witness()).ok_or(Stop::InDoubt)?;
-            // Mostly a second look tells more of it.
+            // Mostly a second measurement finds more.
             if bracket.options.extra.get().is_none() && is_inside(bracket, &simplex, x) {
                 bracket.enter_for_certain(contact.mu);
             }
@@ -89,10 +89,10 @@ pub(super) fn algorithm_3<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Ray
             (v, n) = (to_x, to_x / length);
             continue;
         }
-        // The same across the ray, with the whole line for x.
+        // The same step across the ray, with the whole line for x.
         v = aside(bracket, &mut simplex)?;
         let length = v.norm();
-        // Where nothing brings the line nearer, what the body and v are wrong by may be all that is left.
+        // If no step brings the line nearer, only the errors of the body and of v may be left.
         let progress = nearing_across.goes_on(length);
         let within = if progress { bracket.noise } else { bracket.noise + bracket.error };
         if length - bracket.radius <= within {
@@ -109,8 +109,8 @@ pub(super) fn algorithm_3<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Ray
     }
 }
 
-/// Whether a point of the line is in the body by more than what that and the simplex are wrong by: within the radius
-/// around the simplex, or within a simplex of full dimension.
+/// Whether a point of the line is in the body by more than its error and the simplex's: within the radius around the
+/// simplex, or within a simplex of full dimension.
 fn is_inside<V: Vector>(bracket: &Bracket<'_, V>, simplex: &Simplex<V>, x: V) -> bool {
     let wrong = (bracket.error + bracket.noise) * Scalar::from_f64(2.0);
     let mut seen = [V::ZERO; MAX_POINTS];
@@ -121,15 +121,15 @@ fn is_inside<V: Vector>(bracket: &Bracket<'_, V>, simplex: &Simplex<V>, x: V) ->
     is_in_round || is_around_zero(&seen[..simplex.points().len()], wrong)
 }
 
-/// The contact where the line enters the round of a swept simplex no deeper than errors may have brought it: planes at
-/// the entry then lean so far along the line that none of them closes the bracket.
+/// The contact if the line enters the round part of a swept simplex no deeper than errors may have moved it: planes
+/// at the entry then lean so far along the line that none of them closes the bracket.
 fn graze<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -> Option<RayContact<V>> {
     let (v, within) = (aside(bracket, simplex).ok()?, bracket.noise + bracket.error);
     let is_graze = bracket.radius > within && bracket.radius - v.norm() <= within;
     if is_graze { look_beside(bracket, simplex, v, within, None) } else { None }
 }
 
-/// The shortest vector from the simplex to the line, whose face and weights the simplex is left with.
+/// The shortest vector from the simplex to the line; the simplex keeps its face and weights.
 fn aside<V: Vector>(bracket: &Bracket<'_, V>, simplex: &mut Simplex<V>) -> Result<V, Stop<V>> {
     let line = bracket.line();
     let Closest { v, face, weights } = closest(bracket, simplex, |p| line.across(line.foot - p), V::DIM - 1)?;
@@ -139,7 +139,7 @@ fn aside<V: Vector>(bracket: &Bracket<'_, V>, simplex: &mut Simplex<V>) -> Resul
     Ok(line.across(v))
 }
 
-/// As [`touch_beside`], if the options name that.
+/// The same as [`touch_beside`], if the options have it.
 fn look_beside<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     simplex: &Simplex<V>,
@@ -150,7 +150,7 @@ fn look_beside<V: Vector>(
     (bracket.options.extra.get()?.touch_beside)(bracket, simplex, v, within, normal)
 }
 
-/// The contact where the line comes within rounding of the simplex without entering it ahead of x.
+/// The contact if the line comes within rounding of the simplex without entering it ahead of x.
 pub(super) fn touch_beside<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     simplex: &Simplex<V>,
@@ -160,14 +160,14 @@ pub(super) fn touch_beside<V: Vector>(
 ) -> Option<RayContact<V>> {
     let (point, witness) = (simplex.weighted_point(), simplex.weighted_witness());
     let mut contact = bracket.close_beside(v, within, point, witness, normal)?;
-    // Where no plane was crossed, the ray meets the face of the simplex head-on.
+    // If no plane was crossed, the ray meets the face of the simplex head-on.
     let against = -bracket.line().direction;
     let head_on = || project(simplex.points(), |_| against).across.unit();
     contact.normal = contact.normal.or_else(head_on).or(Some(against));
     Some(contact)
 }
 
-/// The point closest to zero of the simplex seen through `map`, in a space of `dimension` dimensions.
+/// The point closest to zero of the simplex mapped by `map`, in a space of `dimension` dimensions.
 fn closest<V: Vector>(
     bracket: &Bracket<'_, V>,
     simplex: &Simplex<V>,

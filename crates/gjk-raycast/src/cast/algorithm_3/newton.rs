@@ -1,7 +1,7 @@
 //! Newton's method on the plane for Algorithm 3, where the body is curved ([`curvature`](crate::curvature)).
 //!
-//! In the plane, where that algorithm is the search, a ray at a curved body would take 17 support points in place of 7
-//! without it, and in space by the paper's method 45 in place of 30.
+//! In the plane, where that algorithm is the search, a ray against a curved body would take 17 support points instead
+//! of 7 without it, and in space by the paper's method 45 instead of 30.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -21,7 +21,7 @@ impl<V: Vector> Recent<V> {
         Self(Simplex::new())
     }
 
-    /// Adds one; another at the same point, or the oldest of three, makes place.
+    /// Adds a point, in place of another one at the same place, or of the oldest of three.
     pub(super) fn push(&mut self, point: V, along: V) {
         let known = self.0.points().iter().position(|&p| p == point);
         if let Some(out) = known.or((self.0.points().len() == 3).then_some(0)) {
@@ -31,14 +31,14 @@ impl<V: Vector> Recent<V> {
     }
 }
 
-/// Two support points are of one smooth piece if the curvature at one foretells this much of the other.
+/// Two support points are of one smooth piece if the curvature at one predicts this much of the other.
 const SAME_PIECE: f64 = 0.25;
 
 /// The largest tangent of an angle to turn by.
 const LARGEST: f64 = 0.5;
 
-/// The normal of the plane that should be crossed last, and the tangent of the angle to it, by the points found so far.
-/// `None` where curvature says nothing: at a vertex, or where three points of different pieces span a facet.
+/// The normal of the plane that should be crossed last, and the tangent of the angle to it, by the points found so
+/// far. `None` if curvature does not determine it: at a vertex, or if three points of different pieces span a facet.
 pub(super) fn newton<V: Vector>(
     bracket: &Bracket<'_, V>,
     simplex: &Simplex<V>,
@@ -51,7 +51,7 @@ pub(super) fn newton<V: Vector>(
     let seen = SeenAlongRay { bracket, frame: RayFrame::new(bracket.line()) };
     let mut found = [(V::ZERO, V::ZERO); 2 * MAX_POINTS];
     let mut len = 0;
-    // The corners of the simplex first, since what was found last was found nearest the answer.
+    // The corners of the simplex first, since the last point found is nearest the answer.
     let corners = simplex.points().iter().zip(simplex.along()).map(|(&p, &n)| (p + n * bracket.radius, n));
     let others = recent.0.points().iter().zip(recent.0.along()).map(|(&p, &n)| (p, n));
     for (point, n) in corners.chain(others) {
@@ -87,22 +87,22 @@ pub(super) fn newton<V: Vector>(
     (n + seen.frame.vector(d)).unit().map(|to| (to, angle))
 }
 
-/// A smooth piece at a plane that the ray crosses: how far it reaches along the normal, its point as seen from the
+/// A smooth piece at a plane that the ray crosses: its support value along the normal, its point relative to the
 /// line, and its Hessian.
 struct PieceAlongRay<S> {
     reach: S,
     p: Across<S>,
     hessian: Symmetric<S>,
-    /// Whether the point stays where it is.
+    /// Whether the point does not move.
     is_vertex: bool,
     /// The point before it was turned.
     found: Across<S>,
 }
 
-/// The piece to go between, if there is one, and the change to the normal that suits the first alone, if one does.
+/// The second piece, if there is one, and the change of the normal for the first piece alone, if there is one.
 type SecondPiece<S> = (Option<PieceAlongRay<S>>, Option<Across<S>>);
 
-/// Points and planes as they are seen along the ray; normals have length one against it.
+/// Points and planes in the frame of the ray; normals have length one against it.
 struct SeenAlongRay<'k, 'b, V: Vector> {
     bracket: &'k Bracket<'b, V>,
     frame: RayFrame<V>,
@@ -138,8 +138,8 @@ impl<V: Vector> SeenAlongRay<'_, '_, V> {
         PieceAlongRay { reach: to.dot(point) + turned.rise, p, hessian: turned.hessian, is_vertex, found }
     }
 
-    /// Of the other pieces the one that would reach farthest beyond the first at the normal that suits the first alone;
-    /// or where the first alone suits none, the one across from which the line lies. And the change to that normal.
+    /// The other piece that would extend farthest beyond the first at the normal for the first alone; or if the first
+    /// alone gives no normal, the one across from which the line lies. With the change to that normal.
     fn second_piece(&self, first: &PieceAlongRay<V::Scalar>, others: &[(V, V)], n: V) -> SecondPiece<V::Scalar> {
         let noise = self.bracket.noise;
         let p = first.p;

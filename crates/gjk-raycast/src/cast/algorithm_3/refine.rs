@@ -17,9 +17,9 @@ const MAX_FAILURES: usize = 3;
 /// How often the line is moved at a time, each time twice as far, until it pierces the simplex.
 const MAX_MOVES: usize = 6;
 
-/// Closes the bracket between the last plane and the entry into the simplex: the next plane is taken along the
-/// normal at the entry, and the support point found there replaces one of the simplex such that the ray still
-/// enters it, and earlier.
+/// Closes the bracket between the last plane and the entry into the simplex: the next plane is taken along the normal
+/// at the entry, and the support point found there replaces one of the simplex such that the ray still enters it, and
+/// earlier.
 pub(super) fn refine<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     simplex: &mut Simplex<V>,
@@ -52,7 +52,7 @@ pub(super) fn refine<V: Vector>(
             if turned.is_some() {
                 continue;
             }
-            // Nothing is before the facet: what points and planes are wrong by may be all that is left.
+            // No point is before the facet: only the errors of points and planes may be left.
             let all_there_is = wanted + bracket.error;
             return bracket.close_to_hull(slope, all_there_is, || simplex.weighted_witness()).ok_or(Stop::InDoubt);
         }
@@ -61,7 +61,7 @@ pub(super) fn refine<V: Vector>(
         let next = entry(simplex.points(), pierced.line, bracket.radius, bracket.noise);
         let gains = next.is_some_and(|next| next.mu < at.mu);
         if turned.is_some() && !gains {
-            // Away from the facet's normal, there may be nothing before the facet.
+            // Away from the facet's normal, there may be no point before the facet.
             *simplex = before;
             continue;
         }
@@ -77,10 +77,10 @@ pub(super) fn refine<V: Vector>(
 
 /// The line that keeps the simplex pierced.
 ///
-/// A ray that runs through an edge or a vertex enters more than one facet there, and like the simplex method of linear
-/// programming, the exchange of points can go round in circles. Then this line is moved into the facet; planes are
-/// still crossed by the ray itself. Of 2,556 rays at curved bodies in space by this method 16 stay undecided, and 99
-/// without such moves.
+/// A ray that runs through an edge or a vertex enters more than one facet there, and, as in the simplex method of
+/// linear programming, the exchange of points can go round in circles. Then this line is moved into the facet; planes
+/// are still crossed by the ray itself. Of 2,556 rays at curved bodies in space by this method 16 stay undecided,
+/// and 99 without such moves.
 struct Pierced<V: Vector> {
     line: Line<V>,
     /// How far it was moved.
@@ -90,8 +90,8 @@ struct Pierced<V: Vector> {
 }
 
 impl<V: Vector> Pierced<V> {
-    /// The entry into the simplex; of a line that is moved towards the middle of the last facet where there is none, or
-    /// too many exchanges gained nothing.
+    /// The entry of the line into the simplex. The line is moved towards the middle of the last facet if there is no
+    /// entry, or too many exchanges gained nothing.
     fn keep_pierced(
         &mut self,
         bracket: &Bracket<'_, V>,
@@ -117,14 +117,14 @@ impl<V: Vector> Pierced<V> {
     }
 }
 
-/// Whether steps by curvature are taken: while they shrink, and the facet's normal after one that did not; between two
-/// pieces, every other step only goes back and forth.
+/// Whether steps by curvature are taken. They are as long as they shrink; after one that did not, the facet's normal
+/// is taken. Between two pieces, every other step only goes back and forth.
 struct CurvatureSteps<S> {
     last_gap: S,
     failures: usize,
     /// The tangents of the angles of the last two steps.
     angles: [S; 2],
-    /// How much farther one of two pieces is made to reach than the other, so that it is the one found next.
+    /// How far one of two pieces is moved out against the other, so that it is found next.
     model_error: S,
 }
 

@@ -20,12 +20,12 @@ pub(super) struct Entry<V: Vector> {
 }
 
 /// The entry of the line into the hull of the points, swept by `radius`, through a face that has the last point for a
-/// corner. `None` where there is none. A line that passes by within `noise` counts as meeting the simplex.
+/// corner. `None` if there is none. A line that passes by within `noise` counts as meeting the simplex.
 ///
 /// The boundary of the swept simplex is made of spheres about corners, cylinders about edges, and planes along the
 /// facets, each at distance `radius`. Where the line enters one of them, and the core's point below lies within the
-/// face, that is a point of the swept simplex; and the first such point is the entry. Without a radius only the facets
-/// count, and where there is none, what lies within `noise`.
+/// face, that is a point of the swept simplex; and the first such point is the entry. Without a radius only the
+/// facets count, and if there are none, faces within `noise`.
 pub(super) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, noise: V::Scalar) -> Option<Entry<V>> {
     let newest = points.len().checked_sub(1)?;
     let mut best: Option<Entry<V>> = None;
@@ -33,7 +33,9 @@ pub(super) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, n
         let is_facet = face.len() == V::DIM;
         let mut corners = [V::ZERO; MAX_POINTS];
         let corners = face.of(points, &mut corners);
-        let found = match (is_facet, corners.len()) {
+        // Of which there are two kinds, one in each dimension, so that no program has both.
+        let len = if is_facet { V::DIM } else { corners.len() };
+        let found = match (is_facet, len) {
             (true, 2) => enter_facet::<V, 1>(corners, line, radius, noise),
             (true, _) => enter_facet::<V, 2>(corners, line, radius, noise),
             (false, 1) => enter_edge(&AffineHull::<V, 0>::new(corners), line, radius, noise),
@@ -53,9 +55,9 @@ type FoundEntry<V> = Option<(<V as Vector>::Scalar, V, [<V as Vector>::Scalar; M
 
 /// The line crosses the plane at distance `radius` from a facet, on the side it comes from.
 ///
-/// Which point of the facet lies below the crossing is read off across the line, where the line is a point and the
-/// facet a triangle: the barycentric coordinates are the same there, and how flat the line meets the facet does not
-/// matter.
+/// The point of the facet below the crossing is found in the projection along the line, where the line is a point and
+/// the facet a triangle: the barycentric coordinates are the same there, and the angle at which the line meets the
+/// facet does not matter.
 fn enter_facet<V: Vector, const EDGES: usize>(
     corners: &[V],
     line: Line<V>,
@@ -64,7 +66,7 @@ fn enter_facet<V: Vector, const EDGES: usize>(
 ) -> FoundEntry<V> {
     let d = AffineHull::<V, EDGES>::new(corners).project(|_| line.direction).across;
     let slope = -d.length();
-    // A facet along the line has nothing but rounding for d.
+    // For a facet along the line d is nothing but rounding.
     if !(slope < V::Scalar::from_f64(-8.0) * V::Scalar::EPSILON) {
         return None;
     }
@@ -74,16 +76,16 @@ fn enter_facet<V: Vector, const EDGES: usize>(
         *s = line.across(corner - line.foot);
     }
     let below = -line.across(n) * radius;
-    // A facet that is seen as narrow as rounding has edges only: neither where it is crossed nor its slope is known.
+    // A facet whose projection is as narrow as rounding has only edges: neither its crossing nor its slope is known.
     let flat = AffineHull::<V, EDGES>::new(&seen);
     if !(flat.width() > noise) {
         return None;
     }
     let coordinates = flat.project(|corner| below - corner).coordinates;
-    // Weights that are negative by rounding are none: then what the line passes is a point of the facet itself, and not
-    // of its plane, which rounding may have turned along the line. It passes within the noise, or elsewhere. The others
-    // are read off anew along their edge: in a sliver, what rounding leaves of a weight moves the point by much more
-    // than rounding.
+    // Weights that are negative by rounding are zero: then the line passes a point of the facet itself, and not of its
+    // plane, which rounding may have turned along the line. It passes within the noise, or elsewhere. The other weights
+    // are computed again along their edge: in a sliver, the rounding of a weight moves the point by much more than
+    // rounding.
     let (mut rest, mut places, mut len) = ([V::ZERO; MAX_POINTS], [0; MAX_POINTS], 0);
     for (i, &across) in seen[..corners.len()].iter().enumerate() {
         if coordinates[i] >= V::Scalar::ZERO {
@@ -115,8 +117,8 @@ fn enter_facet<V: Vector, const EDGES: usize>(
 
 /// The line comes within `radius` of a corner, or in 3D of an edge.
 ///
-/// Seen along the flat, the line passes a point at the vector `m`, with velocity `d`. It is nearest at `μ₀ = −m·d/d·d`,
-/// and at distance `radius` half a chord earlier.
+/// In the projection along the flat, the line passes a point at the vector `m`, with velocity `d`. It is nearest at
+/// `μ₀ = −m·d/d·d`, and at distance `radius` half a chord earlier.
 fn enter_edge<V: Vector, const EDGES: usize>(
     flat: &AffineHull<V, EDGES>,
     line: Line<V>,

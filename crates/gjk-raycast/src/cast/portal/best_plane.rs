@@ -7,7 +7,7 @@ use crate::cast::ray_frame::Alpha;
 use crate::curvature::{between, is_stiff_across, share_of_second};
 use crate::symmetric::{Across, cross, dot, way};
 
-/// Where the least of the models is greatest, and how great it is there.
+/// The change where the least of the models is greatest, and the models' value there.
 ///
 /// With `τᵢ`, `Pᵢ` and `Hᵢ` of the pieces turned to the last plane, and `δ` the change of `α`, `mᵢ(δ) = τᵢ − Pᵢ·δ −
 /// ½·δ·Hᵢδ`. At the maximum of their minimum there are weights `wᵢ ≥ 0` with sum 1, and `W = Σ wᵢ·Hᵢ`, such that
@@ -16,12 +16,12 @@ use crate::symmetric::{Across, cross, dot, way};
 /// Σ wᵢ·Pᵢ + W·δ = 0,   mᵢ(δ) alike where wᵢ > 0, and no lower elsewhere.
 /// ```
 ///
-/// One piece gives `δ = −H⁻¹P`, or where `H` is singular, [`along_edge`]. Of two, with `e = Pⱼ − Pᵢ`, the second
-/// condition to first order is `e·δ = τⱼ − τᵢ`, and the first one [across](between) `e` gives the rest. Of three, the
-/// plane where all are alike is the portal's own.
+/// One piece gives `δ = −H⁻¹P`, or if `H` is singular, [`along_edge`]. For two, with `e = Pⱼ − Pᵢ`, the second
+/// condition to first order is `e·δ = τⱼ − τᵢ`, and the first one [across](between) `e` gives the rest. For three,
+/// the plane where all are alike is the portal's own.
 ///
-/// The newest piece is the lowest where it was looked at, and mostly one of those. So those without it are tried only
-/// where none with it will do.
+/// The newest piece is the lowest where it was found, and mostly active. So combinations without it are tried only if
+/// none with it is the least.
 pub(super) fn best_plane<V: Vector>(
     pieces: &[RayPiece<V>],
     alpha: Alpha<V::Scalar>,
@@ -43,12 +43,12 @@ pub(super) fn best_plane<V: Vector>(
 struct Models<S> {
     turned: [QuadraticModel<S>; MAX_PIECES],
     len: usize,
-    /// The `τ` of each, with a margin such that the pieces wanted are those found next.
+    /// The `τ` of each, with a margin such that the right pieces are found next.
     tau: [S; MAX_PIECES],
     noise: S,
     /// The length of the normal that the models are turned to.
     length: S,
-    /// What rounding of the planes leaves open of `τ`.
+    /// The error of `τ` from the rounding of the planes.
     margin: S,
     /// The best change so far, and the least of the models there.
     best: Option<(Across<S>, S)>,
@@ -65,7 +65,7 @@ impl<S: Scalar> Models<S> {
         }
         let length = alpha.length();
         let margin = S::from_f64(0.5) * noise * length;
-        // A vertex is known as well as it ever will be; of other pieces, those are wanted that were not looked at last.
+        // A vertex is exact; of other pieces, those that were not found last are to be found next.
         let mut tau = turned.map(|t| if t.hessian.is_zero() { t.tau - margin } else { t.tau + error_weight * margin });
         tau[others.len()] = last.tau;
         Some(Self { turned, len: pieces.len(), tau, noise, length, margin, best: None })
@@ -127,13 +127,13 @@ impl<S: Scalar> Models<S> {
 /// Where the model of a piece with `H = κ·q·qᵀ` is greatest: an edge of the body, curved or straight, that the line
 /// runs through when `q·P` is zero.
 ///
-/// Across the edge, `δ = −(q·P)/κ·q`. Along it the plane is free, between those that the other pieces are on; it is
-/// laid away from them, since on them it would be another piece that shows itself.
+/// Across the edge, `δ = −(q·P)/κ·q`. Along it the plane is free, between those of the other pieces; it is turned
+/// away from them, since otherwise it would find another piece.
 fn along_edge<S: Scalar>(models: &[QuadraticModel<S>], edge: usize, least: S, noise: S) -> Option<Across<S>> {
     let t = &models[edge];
     let (curvature, q) = t.hessian.eigen_of_rank_one()?;
     let (beside, along) = (dot(q, t.p), cross(q, t.p));
-    // Where the line is to be found along the edge rather than beside it, another piece is needed.
+    // If the line is along the edge rather than beside it, another piece is needed.
     if !(along.abs() <= beside.abs().max(noise)) {
         return None;
     }

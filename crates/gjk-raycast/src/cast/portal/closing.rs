@@ -1,4 +1,4 @@
-//! What closes the bracket: the plane that is crossed last, from below, and a point of the body on the line, from
+//! The ends of the bracket: the plane that is crossed last, from below, and a point of the body on the line, from
 //! above.
 
 use convex_support::{Scalar, Vector};
@@ -16,7 +16,7 @@ pub(super) struct BestPlane<V: Vector> {
     pub(super) alpha: Alpha<V::Scalar>,
     /// The core's support point on it.
     point: V,
-    /// Behind this nothing of the ray is left.
+    /// The end of the ray: behind it the search ends.
     end: V::Scalar,
 }
 
@@ -57,8 +57,8 @@ impl<V: Vector> BestPlane<V> {
         if !is_faced || self.tau > self.end { bracket.separate(n, p.point) } else { Ok(()) }
     }
 
-    /// Takes the plane of a support point, if it is crossed later, and ends the search if nothing of the ray is left
-    /// behind it. Whether it is crossed later.
+    /// Takes the plane of a support point, if it is crossed later, and ends the search if it has the rest of the ray
+    /// before it. Returns whether it is crossed later.
     #[inline(always)]
     pub(super) fn improve(
         &mut self,
@@ -110,8 +110,8 @@ fn swept<S: Scalar>(radius: S, alpha: Alpha<S>) -> S {
     if radius > S::ZERO { radius * alpha.length() } else { S::ZERO }
 }
 
-/// Three points of the body, and a combination of them that is on the ray: of a portal in anticlockwise order; or where
-/// none is known, any points, and `high` infinite.
+/// Three points of the body, and a combination of them that is on the ray: those of a portal in anticlockwise order;
+/// or if none is known, any points, with an infinite `high`.
 #[derive(Clone, Copy)]
 pub(super) struct OnLine<V: Vector> {
     pub(super) corners: [RayPoint<V>; 3],

@@ -1,8 +1,8 @@
-//! The ray cast as it is seen along the ray, where it is the search for a plane by two unknowns, and for a point of the
+//! The ray cast in the frame of the ray, where it is the search for a plane by two unknowns, and for a point of the
 //! line in a triangle of support points.
 //!
-//! What is decided here, by signs and by planes in the coordinates of the [frame](super::ray_frame), is where to look
-//! next. Where the [bracket](super::bracket) finds that in doubt, so is the answer, and Algorithm 3 takes over.
+//! Signs, and planes in the coordinates of the [frame](super::ray_frame), only decide where to look next. If the
+//! [bracket](super::bracket) leaves the result in doubt, Algorithm 3 takes over.
 
 mod best_plane;
 mod closing;
@@ -25,10 +25,10 @@ use triangle::triangle;
 /// The tilt that shows another corner of the face that the last plane was across.
 const OF_FACE: f64 = 0.03;
 
-/// By how much the second plane is tilted from a first one that is off by an angle.
+/// The tilt of the second plane against a first one whose error is an angle.
 ///
-/// If it is tilted by less than the first one is off, both may show the same point. A smooth piece that is looked at
-/// from aside is known to the third order of that angle; where a polytope is looked at along, it is the same.
+/// If it is tilted by less than that error, both may find the same point. The model of a smooth piece is right to the
+/// third order of the angle; on a polytope the angle does not matter.
 fn tilt<V: Vector>(bracket: &Bracket<'_, V>, error: V::Scalar) -> V::Scalar {
     let of_face = V::Scalar::from_f64(OF_FACE);
     if bracket.is_curved { (error + error).max(V::Scalar::EPSILON.sqrt()).min(of_face) } else { of_face }
@@ -54,7 +54,7 @@ pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayConta
             found => return found,
         }
     }
-    // A second time where the line was found to touch the body, and is moved inward.
+    // A second time if the line was found to touch the body, and is moved inward.
     for _ in 0..2 {
         match triangle(bracket, &frame, first, seen.take(), tilt) {
             Err(Stop::Touches(inward)) => frame.line.foot += inward,

@@ -1,4 +1,4 @@
-//! Smooth pieces of a body's surface as they are seen along a ray, each a quadratic model of `τ`.
+//! Smooth pieces of a body's surface in the frame of a ray, each a quadratic model of `τ`.
 
 use core::iter;
 
@@ -18,7 +18,7 @@ pub(super) struct RayPiece<V: Vector> {
     pub(super) hessian: Symmetric<V::Scalar>,
 }
 
-/// A piece as it is expected at another plane: `τ(α + δ) ≈ τ − P·δ − δ·Hδ/2`.
+/// The model of a piece at another plane: `τ(α + δ) ≈ τ − P·δ − δ·Hδ/2`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct QuadraticModel<S> {
     pub(super) tau: S,
@@ -36,10 +36,10 @@ impl<S: Scalar> QuadraticModel<S> {
 impl<V: Vector> RayPiece<V> {
     /// The piece [turned](turned) to another plane, where nothing is crossed before `least`.
     ///
-    /// The plane through the point alone is never crossed before the body, and the body's own plane earlier. How wrong
-    /// the model may be is told by the angle that the plane turns by, and by how far the point moves; where that is too
-    /// far, or where it foretells less than was found, a point counts for itself alone. So much of its error as
-    /// `error_weight` is added: where a model is wrong, its piece then shows itself, and is known anew.
+    /// The plane through the point alone is never crossed before the body, and the body's own plane earlier. The angle
+    /// that the plane turns by, and the path of the point, bound the error of the model. If they are too large, or the
+    /// model predicts less than was found, the point counts as a vertex. A part `error_weight` of the error is added:
+    /// if a model is wrong, its piece is then found next, with a new model.
     pub(super) fn at(
         &self,
         alpha: Alpha<V::Scalar>,
@@ -80,18 +80,18 @@ impl<V: Vector> RayPiece<V> {
     }
 }
 
-/// The angle that a plane may turn by, and the way that the point may move, in units of the body's size, for a piece to
-/// be a quadratic model.
+/// The largest angle of a plane, and the longest path of the point, in units of the body's size, for a piece to be a
+/// quadratic model.
 const FAR: f64 = 0.5;
 
-/// As many pieces as are kept.
+/// The most pieces that are kept.
 pub(super) const MAX_PIECES: usize = 4;
 
-/// How far, of the way that a point has moved, it may be from where it was expected to be the same piece's.
+/// The largest distance of a point from its prediction, as a part of its path, for it to be of the same piece.
 const SAME_PIECE: f64 = 0.5;
 
-/// Whether zero is within a triangle, farther than `by` from its sides: twice the area that it spans with one is the
-/// length of that times its distance.
+/// Whether zero is within a triangle, farther than `by` from its sides: twice the area of zero with a side is the
+/// length of the side times its distance.
 #[inline(always)]
 pub(super) fn is_surrounded<V: Vector>([p, q, s]: [&RayPoint<V>; 3], by: V::Scalar) -> bool {
     let weights = weights_of_zero([p.across(), q.across(), s.across()]);
@@ -115,8 +115,8 @@ impl<V: Vector> RayPieces<V> {
         &self.kept[..self.len]
     }
 
-    /// Adds a piece in place of those that are the same, or else of the one that is the farthest from being active.
-    /// Tells whether it is the same as the last.
+    /// Adds a piece in place of those that are the same, or otherwise of the one that is the farthest from being
+    /// active. Returns whether it is the same as the last.
     pub(super) fn push(&mut self, piece: RayPiece<V>, noise: V::Scalar) -> bool {
         let again = self.all().last().is_some_and(|last| last.is_same_as(&piece, noise));
         let mut len = 0;

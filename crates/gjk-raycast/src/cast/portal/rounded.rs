@@ -6,10 +6,10 @@
 //! μ* = max over α of τ(α),   τ(α) = min over the core of t − α·(u, v), less ρ·√(1 + α²),
 //! ```
 //!
-//! which is still concave. Where the minimum is taken over one, two or three points alone, its maximum is known in
-//! closed form: it is where the ray enters the sphere about the point, the cylinder about the edge, or the plane at
-//! distance `ρ` from the triangle. So the search keeps the corner, edge or triangle that the ray enters above, takes
-//! the support point there, and goes on to the earliest of the corners, edges and triangles with that point.
+//! which is still concave. If the minimum is over one, two or three points alone, its maximum has a closed form: it
+//! is where the ray enters the sphere about the point, the cylinder about the edge, or the plane at distance `ρ` from
+//! the triangle. So the search keeps the corner, edge or triangle that the ray enters above, takes the support point
+//! there, and goes on to the earliest of the corners, edges and triangles with that point.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -201,9 +201,9 @@ fn about_corner<V: Vector>(p: &RayPoint<V>, index: usize, radius: V::Scalar) -> 
 
 /// The entry into the cylinder about an edge, if the core's point below is on the edge.
 ///
-/// Seen along the ray, the edge from `p` is the vector `w` and rises by `dt`; zero is at distance `c` from its line,
-/// beside the point `p + b·w`, and `k = −p − b·w` leads there from the line. With `σ² = ρ² − c²`, the plane that
-/// contains the edge's direction and is crossed last has
+/// In the projection along the ray, the edge from `p` is the vector `w` and rises by `dt`; zero is at distance `c`
+/// from its line, beside the point `p + b·w`, and `k = −p − b·w` leads there from the line. With `σ² = ρ² − c²`, the
+/// plane that contains the edge's direction and is crossed last has
 ///
 /// ```text
 /// α = dt/|w|²·w + k·√(w² + dt²)/(|w|·σ),   τ = t_p + b·dt − σ·√(w² + dt²)/|w|,
@@ -220,7 +220,7 @@ fn about_edge<V: Vector>(
     let (p, q) = (&points[i], &points[j]);
     let (du, dv, dt) = (q.u - p.u, q.v - p.v, q.t - p.t);
     let squared = du * du + dv * dv;
-    // An edge along the ray has nothing that its corners do not have.
+    // An edge along the ray adds nothing to its corners.
     if !(squared > noise * noise) {
         return None;
     }
@@ -244,8 +244,8 @@ fn about_edge<V: Vector>(
     Some(RoundedEntry { tau, alpha, corners: [i, j, j], weights: [one - weight, weight, zero], len: 2 })
 }
 
-/// The crossing of the plane at distance `ρ` from a triangle, `τ = Σ wᵢ·tᵢ − ρ·√(1 + α²)` with the weights `w` of zero,
-/// if the core's point below, seen at `−ρ·α/√(1 + α²)`, is in the triangle.
+/// The crossing of the plane at distance `ρ` from a triangle, `τ = Σ wᵢ·tᵢ − ρ·√(1 + α²)` with the weights `w` of
+/// zero, if the core's point below, projected at `−ρ·α/√(1 + α²)`, is in the triangle.
 fn above_triangle<V: Vector>(
     points: &[RayPoint<V>],
     corners: [usize; 3],

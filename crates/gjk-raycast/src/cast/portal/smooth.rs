@@ -1,5 +1,5 @@
-//! The search where the body is smooth: it is replaced by the ellipsoid about its origin that osculates it, which has
-//! the same support point and Hessian where it is looked at.
+//! The search if the body is smooth: it is replaced by the ellipsoid about its origin that osculates it, which has
+//! the same support point and Hessian there.
 //!
 //! The support value of an ellipsoid is `h(n) = √(n·Qn)`, so its support point and Hessian are `p = Qn/h` and `H = (Q −
 //! p·pᵀ)/h`, whence `Q = h·H + p·pᵀ`. Where the ray enters it is known in closed form, and the next plane is the one
@@ -21,12 +21,12 @@ const MAX_STEPS: usize = 12;
 /// Planes along the ray, between it and an ellipsoid that it misses, that do not separate it from the body.
 const MAX_MISSES: usize = 2;
 
-/// The angle that a plane which the last frame tells is off by at most, where it is the same piece's.
+/// The largest error, as an angle, of a plane from a warm start, if it is of the same piece.
 const FAR: f64 = 0.3;
 
 /// Replaces the body by the ellipsoid that osculates it, takes the plane where the ray enters that, and so on.
 ///
-/// Where the last frame tells the plane, and another piece has the point that is `seen` there, that ellipsoid is none.
+/// If a warm start gave the plane, and the point `seen` there is of another piece, no ellipsoid replaces the body.
 pub(super) fn smooth<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
@@ -42,7 +42,7 @@ pub(super) fn smooth<V: Vector>(
     for _ in 0..MAX_STEPS {
         let Next { n, alpha } = next;
         let hessian = frame.hessian(bracket.body, n);
-        // Of a plane along the ray it never is, since H·n = 0 and n is across the ray.
+        // For a plane along the ray it never is, since H·n = 0 and n is across the ray.
         if (alpha.is_some() || misses == 0) && !hessian.is_regular() {
             return Err(Stop::InDoubt);
         }
@@ -96,12 +96,12 @@ pub(super) fn smooth<V: Vector>(
     Err(Stop::InDoubt)
 }
 
-/// The contact at a ball that rolls within the body and touches its surface at `p`, if the line enters that within
-/// rounding of the best plane: sooner by a support point than a point of the body is on the line.
+/// The contact at a ball that rolls within the body and touches its surface at `p`, if the line enters the ball
+/// within rounding of the best plane. This takes one support point less than a point of the body on the line.
 ///
-/// With `c = p − ρ·n` the ball's centre, `n` of unit length, the line enters it at `t_c − √(ρ² − u_c² − v_c²)`: behind
-/// the plane by the square of the distance from `p`. The normal and both shapes' points are moved to where Newton's
-/// step leads, `δ` with `H·δ = −(u, v)`, by what each has of the core's Hessian.
+/// With `c = p − ρ·n` the ball's centre, `n` of unit length, the line enters it at `t_c − √(ρ² − u_c² − v_c²)`:
+/// behind the plane by the square of the distance from `p`. The normal and both shapes' points are moved to where
+/// Newton's step leads, `δ` with `H·δ = −(u, v)`, by each shape's part of the core's Hessian.
 #[inline(never)]
 fn in_ball<V: Vector>(
     bracket: &mut Bracket<'_, V>,
@@ -141,11 +141,11 @@ impl<V: Vector> Next<V> {
     }
 }
 
-/// The plane where the ray enters the ellipsoid with support point `p` and this Hessian at `n`; or if it misses that,
-/// the plane along the ray between them.
+/// The plane where the ray enters the ellipsoid with support point `p` and this Hessian at `n`; or if the ray misses
+/// the ellipsoid, the plane along the ray between them.
 ///
-/// In the axes `e₁`, `e₂` and `−d` let `Q = (A b; bᵀ c)`, and `φ` be the line's foot. That the support point be on the
-/// line, `(A·α + b)/s = φ` with `s² = n·Qn`, gives
+/// In the axes `e₁`, `e₂` and `−d` let `Q = (A b; bᵀ c)`, and `φ` be the line's foot. The support point is on the
+/// line if `(A·α + b)/s = φ` with `s² = n·Qn`, hence
 ///
 /// ```text
 /// α = A⁻¹(s·φ − b),   s² = (c − b·A⁻¹b)/(1 − φ·A⁻¹φ).

@@ -7,8 +7,8 @@
 //! Where pieces meet, such as the rims of a cylinder along its side, each is a quadratic model of its own
 //! (`pieces.rs`), and the next plane is where the least of the models is greatest (`best_plane.rs`): a step of
 //! sequential quadratic programming (Nocedal and Wright, *Numerical Optimization*, ch. 18), which for three pieces is
-//! the portal's own plane. Between two, both have to be looked at in turn, though only the one that reaches farther
-//! shows itself; so the plane is laid by a little more than the error of the older model on its side.
+//! the portal's own plane. Of two pieces, both have to be found in turn, though a plane finds only the one that
+//! extends farther; so the plane is moved by a little more than the error of the older model to its side.
 
 use convex_support::numerics::elementary::power_of_two;
 use convex_support::{Scalar, Vector};
@@ -28,12 +28,12 @@ const MAX_STEPS: usize = 40;
 /// Steps of the models that do not halve the bracket before the next one is the portal's own plane.
 const MAX_FAILURES: i32 = 3;
 
-/// How many times as far as the last planes were tilted the next one is, at most, from pieces that do not enclose the
-/// line.
+/// The largest tilt of the next plane from pieces that do not enclose the line, in units of the tilt of the last
+/// planes.
 const FAR: f64 = 8.0;
 
 /// Brings a portal nearer, by planes that the curvature of the body suggests as long as they close the bracket fast,
-/// and by the portal's own. The points were found by planes that were tilted from one another by so much.
+/// and by the portal's own. The points were found by planes tilted from one another by `tilt`.
 pub(super) fn sqp<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
@@ -46,7 +46,7 @@ pub(super) fn sqp<V: Vector>(
     for p in &portal.corners {
         pieces.push(piece(bracket, frame, *p, alpha), bracket.noise);
     }
-    // What the last frame tells is near enough for models, and too near for the plane through the points.
+    // The plane of a warm start is near enough for models, and too near for the plane through the points.
     if tilt < Scalar::ONE
         && let Some(newest) = pieces.all().last()
     {
@@ -69,7 +69,7 @@ pub(super) fn sqp<V: Vector>(
         let floor = best.tau - bracket.noise * best.alpha.length();
         portal.exchange(&p, floor);
         if portal.high < floor {
-            // Nothing of the body is before the plane: zero was in the triangle by rounding alone.
+            // No part of the body is before the plane: zero was in the triangle by rounding alone.
             portal.high = V::Scalar::infinity();
         } else if portal.high < start {
             break;
@@ -90,7 +90,7 @@ pub(super) fn sqp<V: Vector>(
     Err(Stop::InDoubt)
 }
 
-/// A point's piece at the plane it was found on. A point found on a plane along the ray counts for itself alone.
+/// A point's piece at the plane it was found on. A point found on a plane along the ray is a vertex.
 #[inline(always)]
 fn piece<V: Vector>(
     bracket: &Bracket<'_, V>,
@@ -104,9 +104,9 @@ fn piece<V: Vector>(
     }
 }
 
-/// How well the steps go.
+/// The progress of the steps.
 struct Steps<S> {
-    /// What the last step was to leave of the bracket.
+    /// The bracket that the last step predicted.
     gap: S,
     /// Steps in a row that did not halve it.
     failures: i32,
@@ -115,7 +115,7 @@ struct Steps<S> {
 }
 
 impl<S: Scalar> Steps<S> {
-    /// Too little of the error shows the same piece again; too much goes back and forth between two.
+    /// Too little of the error finds the same piece again; too much goes back and forth between two.
     #[inline(always)]
     fn weigh_error(&mut self, same_piece: bool) {
         self.error_weight =
@@ -147,13 +147,13 @@ impl<S: Scalar> Steps<S> {
             None if portal.high.is_finite() => portal.alpha(),
             None => return None,
         };
-        // What is looked at twice tells nothing new.
+        // The same plane again gives nothing new.
         (to != alpha).then_some(to)
     }
 }
 
 impl<V: Vector> OnLine<V> {
-    /// No portal, but points of the body.
+    /// Points of the body that form no portal.
     pub(super) fn unknown(corners: [RayPoint<V>; 3]) -> Self {
         Self { corners, weights: [V::Scalar::ZERO; 3], high: V::Scalar::infinity() }
     }
@@ -164,8 +164,9 @@ impl<V: Vector> OnLine<V> {
         RayPlane::through([p, q, s]).alpha()
     }
 
-    /// Puts a point in the place of one corner, if the line still runs through, and earlier; but no earlier than
-    /// `floor`, before which nothing of the body is: a triangle that is as flat as rounding may not contain zero.
+    /// Puts a point in the place of one corner, if the line still runs through the triangle, and earlier; but no
+    /// earlier than `floor`, before which there is no part of the body: a triangle that is as flat as rounding may not
+    /// contain zero.
     fn exchange(&mut self, r: &RayPoint<V>, floor: V::Scalar) {
         let zero = V::Scalar::ZERO;
         for i in 0..3 {

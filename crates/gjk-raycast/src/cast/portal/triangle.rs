@@ -1,9 +1,10 @@
 //! The search for a triangle of support points that the line runs through, a *portal*, as near as there is one.
 //!
-//! Seen along the ray, a portal contains zero, and the ray crosses it at `Σ wᵢ·tᵢ`: a bound from above. With the
-//! portal's own plane for `α`, the support point either is on that plane, and `τ(α)` is as high; or it is before it,
-//! and of the three triangles that it spans with the edges of the portal one contains zero, and is crossed earlier.
-//! That is the simplex method for a linear programme in the two unknowns `α`, whose constraints are the support points.
+//! In the projection along the ray, a portal contains zero, and the ray crosses it at `Σ wᵢ·tᵢ`: a bound from above.
+//! With the portal's own plane for `α`, the support point either is on that plane, and `τ(α)` is as high; or it is
+//! before it, and one of the three triangles that it spans with the edges of the portal contains zero, and is crossed
+//! earlier. This is the simplex method for a linear programme in the two unknowns `α`, whose constraints are the
+//! support points.
 //!
 //! The name, and the search for the first portal, are those of Gary Snethen's *Minkowski portal refinement*
 //! (`XenoCollide`: Complex Collision Made Simple, Game Programming Gems 7, 2008), whose ray runs from a point inside of
@@ -22,10 +23,10 @@ use crate::cast::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use crate::cast::{RayContact, Stop};
 use crate::symmetric::dot;
 
-/// Support points until the portal has to be found; half as many where curvature may tell more.
+/// Support points until the portal has to be found; half as many if curvature may help.
 const MAX_OUTSIDE: usize = 16;
 
-/// The tilt up to which smooth pieces are looked at from near.
+/// The tilt up to which planes show the same smooth piece.
 const NEAR: f64 = 0.01;
 
 /// Exchanges of a point that bring the portal no nearer.
@@ -60,7 +61,7 @@ pub(super) fn triangle<V: Vector>(
     let mut q = planes.opposite(bracket, &p)?;
     let mut portal = if tilt < Scalar::ONE { mixed(frame, &p, &q) } else { None };
     if portal.is_none() {
-        // Pieces known from so near tell where to look next before the line is enclosed.
+        // Pieces found by planes so near one another determine the next plane before the line is enclosed.
         if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.is_curved {
             match sqp(bracket, frame, OnLine::unknown([p, p, q]), planes.best, tilt) {
                 Err(Stop::InDoubt) => {}
@@ -71,8 +72,8 @@ pub(super) fn triangle<V: Vector>(
     }
     match portal {
         Some(found) => planes.shrink(bracket, found),
-        // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a
-        // smooth piece may be found that it runs through.
+        // The line passes near the outline of the body, too near to be enclosed by points; but it may run through an
+        // edge or a smooth piece.
         None if planes.best.is_known() && frame.is_curved(bracket, frame.normal(planes.best.alpha.plane())) => {
             sqp(bracket, frame, OnLine::unknown([p, q, q]), planes.best, tilt)
         }
@@ -88,7 +89,7 @@ struct Planes<'f, V: Vector> {
     tilt: V::Scalar,
 }
 
-/// Three points of the body whose triangle contains zero as seen along the ray.
+/// Three points of the body whose triangle contains zero in the projection along the ray.
 struct Triangle<V: Vector> {
     corners: [RayPoint<V>; 3],
     /// Zero's weights, up to their sum.
@@ -98,7 +99,7 @@ struct Triangle<V: Vector> {
 }
 
 impl<V: Vector> Planes<'_, V> {
-    /// The support point of a plane, which is the last one then.
+    /// The support point of a plane, which becomes the last one.
     #[inline(always)]
     fn support(&mut self, bracket: &mut Bracket<'_, V>, plane: RayPlane<V::Scalar>) -> Result<RayPoint<V>, Stop<V>> {
         let p = self.frame.support_of(bracket, plane)?;
@@ -107,8 +108,8 @@ impl<V: Vector> Planes<'_, V> {
         Ok(p)
     }
 
-    /// The support point of a plane that is tilted towards `toward`; or, if that is not on that side of the line, of
-    /// one that is tilted more, and in the end the one along `toward` itself.
+    /// The support point of a plane tilted towards `toward`; or, if that is not on that side of the line, of one tilted
+    /// more, and in the end the one along `toward` itself.
     #[inline(always)]
     fn support_toward(
         &mut self,
@@ -141,7 +142,7 @@ impl<V: Vector> Planes<'_, V> {
         self.support_toward(bracket, plane, toward)
     }
 
-    /// A third point such that the triangle contains zero. `None` where there are too many that do not.
+    /// A third point such that the triangle contains zero. `None` after too many others.
     #[inline(always)]
     fn enclose(
         &mut self,
@@ -172,8 +173,8 @@ impl<V: Vector> Planes<'_, V> {
         Ok(None)
     }
 
-    /// Brings the portal nearer until the bracket closes between the best plane, at its own cosine, and the portal. On
-    /// its own, since together with the search for a portal it runs out of registers.
+    /// Brings the portal nearer until the bracket closes between the best plane, at its own cosine, and the portal. A
+    /// function of its own, since together with the search for a portal it runs out of registers.
     #[inline(never)]
     fn shrink(&mut self, bracket: &mut Bracket<'_, V>, mut portal: Triangle<V>) -> Result<RayContact<V>, Stop<V>> {
         let tolerance = bracket.tolerance();
@@ -222,7 +223,7 @@ impl<V: Vector> Planes<'_, V> {
 }
 
 impl<V: Vector> Triangle<V> {
-    /// Its plane, where the sum of the weights is known.
+    /// Its plane, given the sum of the weights.
     #[inline(always)]
     fn plane(&self, sum: V::Scalar) -> RayPlane<V::Scalar> {
         let [p, q, s] = &self.corners;
@@ -250,7 +251,7 @@ impl<V: Vector> Triangle<V> {
         Ok(())
     }
 
-    /// Bounds the entry by its plane, where the line runs through it by more than an error.
+    /// Bounds the entry by its plane, if the line runs through it by more than an error.
     #[inline(always)]
     fn bound_entry(&self, bracket: &mut Bracket<'_, V>, RayPlane { a, b, c }: RayPlane<V::Scalar>, high: V::Scalar) {
         if is_surrounded(self.corners.each_ref(), bracket.error + bracket.noise) {
@@ -287,7 +288,7 @@ fn mixed<V: Vector>(frame: &RayFrame<V>, p: &RayPoint<V>, q: &RayPoint<V>) -> Op
 }
 
 /// The support point along a vector across the ray, if the plane there does not separate and the point is beyond the
-/// line. Where the line touches the body there, to rounding, it is to pass a little farther inside.
+/// line. If the line touches the body there, to rounding, it is moved a little farther inside.
 #[cold]
 #[inline(never)]
 fn support_across<V: Vector>(
