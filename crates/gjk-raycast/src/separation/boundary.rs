@@ -105,11 +105,11 @@ struct Fresh {
 
 #[cfg(feature = "std")]
 std::thread_local! {
-    /// Polytopes of this thread that have outgrown their room, of any type of vectors.
+    /// Polytopes that have outgrown their room, of any type of vectors.
     static OUTGROWN: core::cell::RefCell<Vec<Box<dyn Any>>> = const { core::cell::RefCell::new(Vec::new()) };
 }
 
-/// What is done with the polytopes that are kept, where there is a thread to keep them.
+/// Acts on the polytopes that this thread keeps. Without the standard library none does.
 fn with_outgrown<R>(act: impl FnOnce(&mut Vec<Box<dyn Any>>) -> R) -> Option<R> {
     #[cfg(feature = "std")]
     return OUTGROWN.try_with(|kept| act(&mut kept.borrow_mut())).ok();
@@ -121,9 +121,9 @@ fn with_outgrown<R>(act: impl FnOnce(&mut Vec<Box<dyn Any>>) -> R) -> Option<R> 
 }
 
 impl<V: Vector> Boundary<V> {
-    /// Lends a search no polytope yet, as [`new`](Self::new) makes it. One that outgrows its room is kept with what it
-    /// has allocated, and lent to the next search of its thread: so none allocates anything, unless it is larger than
-    /// all before it. A support map that asks for a depth itself finds it lent, and has one of its own.
+    /// Lends a search what [`new`](Self::new) makes. If that outgrows its room, the thread keeps it with all that it has
+    /// allocated, and lends it to the next search. So only a search that needs more than any before it allocates. One
+    /// that is asked within another, by a support map, has a polytope of its own.
     pub(super) fn lend<R>(accuracy: f64, search: impl FnOnce(&mut Self) -> R) -> R {
         // In its place from the beginning: it is a large object to move.
         let mut own = Self::new(accuracy);
