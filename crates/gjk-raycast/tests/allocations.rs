@@ -83,7 +83,7 @@ fn a_depth_allocates_nothing_once_warm() {
     let count = pairs_that_allocate(|a, b| {
         let _ = black_box(signed_distance(a, b, SignedDistanceOptions::default()));
     });
-    assert!(count > 8, "{count} pairs are deep enough to allocate at first");
+    assert!(count > 4, "{count} pairs are deep enough to allocate at first");
 }
 
 /// There is room for as many vertices, so that programs without threads can do without allocations too.
@@ -100,7 +100,7 @@ fn a_manifold_allocates_nothing_once_warm() {
     let count = pairs_that_allocate(|a, b| {
         let _ = black_box(contact(a, b, 0.01, SignedDistanceOptions::default()));
     });
-    assert!(count > 8, "{count} pairs are deep enough to allocate at first");
+    assert!(count > 4, "{count} pairs are deep enough to allocate at first");
 }
 
 #[test]
