@@ -1,5 +1,7 @@
 //! Boxes and balls around shapes, for culling.
 
+use num_traits::Float as _;
+
 use crate::{Core, Hint, Scalar, SupportMap, Vector, support_value};
 
 /// A box along the coordinate axes: the points with `min ≤ x ≤ max`, coordinate by coordinate.
@@ -13,6 +15,14 @@ pub struct Aabb<V: Vector> {
 }
 
 impl<V: Vector> Aabb<V> {
+    /// The box of all finite points.
+    #[inline]
+    #[must_use]
+    pub fn everything() -> Self {
+        let all = V::splat(V::Scalar::max_value());
+        Self { min: -all, max: all }
+    }
+
     /// The middle of the box.
     #[inline]
     #[must_use]

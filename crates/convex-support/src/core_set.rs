@@ -40,6 +40,21 @@ pub struct Core<V: Vector> {
 }
 
 impl<V: Vector> Core<V> {
+    /// A core about zero whose support points are exact, swept by no ball.
+    #[inline(always)]
+    #[must_use]
+    pub fn exact(kind: CoreKind<V>, extent: V::Scalar) -> Self {
+        let zero = V::Scalar::ZERO;
+        Self { origin: V::ZERO, radius: zero, rolling_radius: zero, extent, error: zero, kind }
+    }
+
+    /// A bound on how far the points of the set are from its origin.
+    #[inline(always)]
+    #[must_use]
+    pub fn size(&self) -> V::Scalar {
+        self.extent + self.radius
+    }
+
     /// The core of the set swept by a ball of this radius, as for [`Rounded`](crate::Rounded).
     #[inline(always)]
     #[must_use]

@@ -76,7 +76,7 @@ pub fn check<V: Vector>(shape: AnyShape<'_, V>, d: V, e: V) -> Result<(), TestCa
         ("zero gives a point of the set, and nothing panics", zero_gives_a_point_of_the_set),
     ];
     let core = shape.core();
-    let place = core.origin.norm() + core.extent + core.radius;
+    let place = core.origin.norm() + core.size();
     let rounding = V::Scalar::from_f64(SLACK) * (core.error + V::Scalar::EPSILON * place);
     laws.into_iter().try_for_each(|(name, law)| {
         law(shape, d, e, rounding).map_err(|broken| TestCaseError::fail(format!("{name}: {broken}")))
@@ -187,7 +187,7 @@ fn line_enters_where_it_certainly_does<V: Vector>(
     rounding: V::Scalar,
 ) -> Result<(), TestCaseError> {
     let core = shape.core();
-    let size = core.extent + core.radius;
+    let size = core.size();
     let (at, away) = (shape.support(d), e * (size / e.norm()));
     for (source, direction) in [(at + away, -away), (at + away, away), (core.origin + away, at - core.origin)] {
         // Lengths whose squares are no numbers tell nothing.

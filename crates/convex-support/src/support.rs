@@ -78,14 +78,7 @@ pub trait SupportMap {
     #[inline(always)]
     fn core(&self) -> Core<Self::Vector> {
         let extent = extent_along_axes(|d| self.support(d)).norm();
-        Core {
-            origin: Self::Vector::ZERO,
-            radius: Scalar::ZERO,
-            rolling_radius: Scalar::ZERO,
-            extent,
-            error: roundings(8.0, extent),
-            kind: CoreKind::Curved,
-        }
+        Core { error: roundings(8.0, extent), ..Core::exact(CoreKind::Curved, extent) }
     }
 
     /// A point of the core farthest along `direction`, relative to the [origin](Core::origin).

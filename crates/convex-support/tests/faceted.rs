@@ -1,22 +1,15 @@
 //! Hulls with facets, against shapes with closed forms of their own.
 
+use crate::line_crossing::crossing_of;
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies as any;
 use convex_support::{
-    CertainCrossing, CrossedByLine, Crossing, Cuboid, Faceted, LineCrossing, LineQuery, Posed, Scalar, SupportMap,
-    Triangle, Vector, line_crossing, support_value,
+    CertainCrossing, Crossing, Cuboid, Faceted, LineQuery, Posed, Scalar, SupportMap, Triangle, Vector, support_value,
 };
 use num_traits::Float;
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
-
-/// The crossing of a shape that has a closed form of it.
-fn crossing_of<V: Vector>(shape: &impl CrossedByLine<Vector = V>, source: V, direction: V) -> Option<Crossing<V>> {
-    let crossing = line_crossing(shape, source, direction);
-    assert_ne!(crossing, LineCrossing::Unknown, "a closed form");
-    crossing.crossing()
-}
 
 /// The corners of a box in a pose.
 fn corners<V: Vector>(half_extents: V, posed: &Posed<Cuboid<V>>) -> Vec<V> {

@@ -20,7 +20,11 @@ impl<S: CrossedByLine + Debug> Shape for S {}
 type AnyShape<V> = Box<dyn Shape<Vector = V>>;
 
 /// The crossing of a shape that has a closed form of it.
-fn crossing_of<V: Vector>(shape: &impl CrossedByLine<Vector = V>, source: V, direction: V) -> Option<Crossing<V>> {
+pub(crate) fn crossing_of<V: Vector>(
+    shape: &impl CrossedByLine<Vector = V>,
+    source: V,
+    direction: V,
+) -> Option<Crossing<V>> {
     let crossing = line_crossing(shape, source, direction);
     assert_ne!(crossing, LineCrossing::Unknown, "a closed form");
     crossing.crossing()

@@ -47,12 +47,66 @@ impl<'a, V: Vector> EllipsoidPair<'a, V> {
     }
 
     /// The [`free_margin`] of the first about the second.
+    ///
+    /// Its derivatives are zero where x₁ lies in E₂. Its gradient is continuous, and its second derivatives jump at the
+    /// boundary of E₂, where m has none; their block of translations is positive semidefinite, since m is convex in the
+    /// centres.
+    ///
+    /// ```
+    /// use convex_support::{Ellipsoid, glam::DVec3};
+    /// use ellip_margin::{EllipsoidPair, MarginOptions};
+    ///
+    /// let link = Ellipsoid::new(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0), Default::default())?;
+    /// let obstacle = Ellipsoid::new(DVec3::new(6.0, 0.0, 0.0), DVec3::ONE, Default::default())?;
+    /// let pair = EllipsoidPair::new(&link, &obstacle, MarginOptions::default());
+    /// let gradient = pair.margin().gradient();
+    /// // m = ((6 − x)/2 − ½)² − 1 for the link at (x, 0, 0).
+    /// assert_eq!(gradient.translation, DVec3::new(-2.5, 0.0, 0.0));
+    /// // A joint at (0, −3, 0) about z swings the link towards −x, by 3 a radian.
+    /// assert_eq!(gradient.revolute(DVec3::new(0.0, -3.0, 0.0), DVec3::Z), 7.5);
+    /// # Ok::<(), convex_support::InvalidShape>(())
+    /// ```
+    ///
+    /// ```
+    /// use convex_support::{Ellipsoid, glam::{DMat3, DVec3}};
+    /// use ellip_margin::{EllipsoidPair, MarginOptions};
+    ///
+    /// // m = (d/2 − ½)² − 1 for balls of radius 2 and 1 at a distance of d: m″ = ½ along,
+    /// // m′/d = (d − 1)/2d across.
+    /// let link = Ellipsoid::new(DVec3::ZERO, DVec3::splat(2.0), Default::default())?;
+    /// let obstacle = Ellipsoid::new(DVec3::new(5.0, 0.0, 0.0), DVec3::ONE, Default::default())?;
+    /// let pair = EllipsoidPair::new(&link, &obstacle, MarginOptions::default());
+    /// let hessian = pair.margin().hessian();
+    /// let due = DMat3::from_diagonal(DVec3::new(0.5, 0.4, 0.4));
+    /// assert!(DMat3::from_cols_array_2d(&hessian.matrix()).abs_diff_eq(due, 1e-15));
+    /// // A ball may turn as it likes.
+    /// assert_eq!(hessian.along(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)), 0.0);
+    /// # Ok::<(), convex_support::InvalidShape>(())
+    /// ```
     #[inline]
     pub fn margin(&self) -> Answer<'a, V, Margin<V>> {
         self.answer(free_margin(self.first, self.second, self.options))
     }
 
     /// The Euclidean [`distance`], certified.
+    ///
+    /// Its gradient is minus the unit normal, as a force at the closest point of the first. Of its second derivatives
+    /// the block of translations is positive semidefinite, with the normal in its kernel; they grow without bound for
+    /// bodies of no extent. All are zero where the bodies overlap.
+    ///
+    /// ```
+    /// use convex_support::{Ellipsoid, glam::DVec3};
+    /// use ellip_margin::{EllipsoidPair, MarginOptions};
+    ///
+    /// let link = Ellipsoid::new(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0), Default::default())?;
+    /// let obstacle = Ellipsoid::new(DVec3::new(6.0, 0.0, 0.0), DVec3::ONE, Default::default())?;
+    /// let distance = EllipsoidPair::new(&link, &obstacle, MarginOptions::default()).distance();
+    /// assert_eq!(distance.gradient().translation, DVec3::new(-1.0, 0.0, 0.0));
+    /// // The tip at (2, 0, 0) swings away from the obstacle to second order only, by (r + r²/ρ)/2·ω².
+    /// assert_eq!(distance.gradient().rotation, DVec3::ZERO);
+    /// assert!(distance.hessian().along(DVec3::ZERO, DVec3::Z) > 0.0);
+    /// # Ok::<(), convex_support::InvalidShape>(())
+    /// ```
     pub fn distance(&self) -> Answer<'a, V, Distance<V>> {
         self.answer(distance(self.first, self.second, self.options))
     }
@@ -63,6 +117,25 @@ impl<'a, V: Vector> EllipsoidPair<'a, V> {
     }
 
     /// The common scale at which both touch; see [`scaling`].
+    ///
+    /// Its gradient tells the way out at any depth, also where the margin has reached its floor. α is homogeneous in
+    /// the line of centres: its second derivatives grow as its inverse towards concentric bodies. These have the least
+    /// α there is and no derivatives, and zero is the answer.
+    ///
+    /// ```
+    /// use convex_support::{Ellipsoid, glam::DVec3};
+    /// use ellip_margin::{EllipsoidPair, MarginOptions};
+    ///
+    /// // Balls of radius 2 and 1, their centres 0.6 apart: α = distance of the centres/3.
+    /// let e1 = Ellipsoid::new(DVec3::ZERO, DVec3::splat(2.0), Default::default())?;
+    /// let e2 = Ellipsoid::new(DVec3::new(0.6, 0.0, 0.0), DVec3::ONE, Default::default())?;
+    /// let pair = EllipsoidPair::new(&e1, &e2, MarginOptions::default());
+    /// assert_eq!(pair.margin().gradient().translation, DVec3::ZERO);
+    /// assert!(
+    ///     pair.scaling().gradient().translation.abs_diff_eq(DVec3::new(-1.0 / 3.0, 0.0, 0.0), 1e-15)
+    /// );
+    /// # Ok::<(), convex_support::InvalidShape>(())
+    /// ```
     pub fn scaling(&self) -> Answer<'a, V, Scaling<V>> {
         self.answer(scaling(self.first, self.second, self.options))
     }

@@ -78,7 +78,6 @@ mod derivative;
 mod distance;
 mod ellipsoid_pair;
 mod error;
-mod hierarchy;
 mod margin;
 mod numerics;
 mod options;

@@ -97,7 +97,7 @@ impl<const N: usize> Pair<N> {
             for i in 0..N {
                 e = e + r[i] * self.axes2[j][i];
             }
-            let c = e.divided_by(self.a2[j]);
+            let c = e / self.a2[j].into();
             excess = excess + c * c;
         }
         excess.value()
@@ -135,7 +135,7 @@ impl<const N: usize> Pair<N> {
             for k in 0..N {
                 e = e + p[k] * self.axes1[i][k];
             }
-            let w = e.divided_by(self.a1[i]);
+            let w = e / self.a1[i].into();
             margin = margin + w * w;
             rounded_w[i] = w.value();
         }

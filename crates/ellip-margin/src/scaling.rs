@@ -78,8 +78,7 @@ fn scaling_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, o
     let (c, g) = (c.map(|x| x / unit_of_r), g.map(|x| x / unit_of_r));
     let least = |a: Vec<N>| a.iter().fold(a[0], |m, x| m.min(*x));
     let apart = |scale: f64| V::Scalar::from_f64((scale - 1.0) * (least(pair.a1) + least(pair.a2)));
-    let (norm_c, norm_g) = (dot(c, c).sqrt(), dot(g, g).sqrt());
-    if norm_c == 0.0 {
+    if dot(c, c) == 0.0 {
         return Scaling {
             scale: V::Scalar::ZERO,
             point: e2.center(),
@@ -90,9 +89,8 @@ fn scaling_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, o
             ball_points: [V::ZERO; 2],
         };
     }
-    let Svd { sigma, u, v } = svd(pair.b());
-    let ball: Vec<N> =
-        core::array::from_fn(|i| if norm_g < sigma[i] * norm_c { dot(u[i], g) / sigma[i] } else { dot(v[i], c) });
+    let basis = svd(pair.b());
+    let (Svd { sigma, u, v }, ball) = (basis, basis.coordinates(c, g));
     let Root { nu, x, status, iterations } = root(sigma, ball, options);
     // α² = t(1 − t)rᵀ[…]⁻¹r = ν/(1 + ν)·Σ ĉᵢx̂ᵢ, stationary in ν.
     let scale = (nu / (1.0 + nu) * dot(ball, x)).sqrt() * unit_of_r;

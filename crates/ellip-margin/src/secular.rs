@@ -58,13 +58,10 @@ pub(crate) fn solve<const N: usize>(
     }
 
     let basis = svd(pair.b());
-    let Svd { sigma, u, v } = basis;
+    let Svd { sigma, v, .. } = basis;
     let largest = sigma.iter().fold(0.0f64, |m, s| m.max(*s));
     let ratio = sigma.map(|s| (largest / s) * (largest / s));
-    // ĉ = Vᵀc = Σ⁻¹Uᵀg: each coordinate from the side with the smaller rounding error.
-    let (norm_c, norm_g) = (dot(c, c).sqrt(), dot(g, g).sqrt());
-    let ball: Vec<N> =
-        core::array::from_fn(|i| if norm_g < sigma[i] * norm_c { dot(u[i], g) / sigma[i] } else { dot(v[i], c) });
+    let ball = basis.coordinates(c, g);
 
     // Below the root: where one term alone would reach 1; where φ would if all rᵢ were their mean, with the weights of
     // ĉ² (a step of Newton's method from τ = 0) or of (ĉᵢ/rᵢ)² (a step from infinity).
@@ -73,6 +70,7 @@ pub(crate) fn solve<const N: usize>(
     let b: Vec<N> = core::array::from_fn(|i| ball[i] / ratio[i]);
     let (bb, mean) = (dot(b, b), (0..N).map(|i| b[i] * b[i] / ratio[i]).sum::<f64>());
     low = low.max(bb.sqrt() - mean / bb);
+    let norm_c = dot(c, c).sqrt();
     let newton = excess / (1.0 + norm_c) * (norm_c * norm_c) / (0..N).map(|i| squares[i] * ratio[i]).sum::<f64>();
     low = low.max(newton);
 

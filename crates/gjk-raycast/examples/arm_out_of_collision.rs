@@ -1,5 +1,6 @@
-//! The way of a robot arm with six joints leads through two obstacles. Gradient descent on the signed distance pushes
-//! it out: the derivative of each distance by the pose of a link becomes that by the joints that carry the link.
+//! The path of a robot arm with six joints leads through two obstacles. Gradient descent on the signed distance
+//! pushes it out: the derivative of each distance by the pose of a link becomes that by the joints that carry the
+//! link.
 //!
 //! `cargo run --release -p gjk-raycast --example arm_out_of_collision`
 

@@ -1,6 +1,6 @@
-//! A UR5 follows an operator who does not look where it goes, among ten thousand obstacles, at 50 steps a second. A filter
-//! lets a step through only if the arm certainly stays farther from everything than a margin; and it asks for distances
-//! only when what the last ones allow is used up.
+//! A UR5 follows an operator who does not look where it goes, among ten thousand obstacles, at 50 steps a second. A
+//! filter lets a step through only if the arm certainly stays farther from everything than a margin. It asks for
+//! distances only when the room of the last ones is used up.
 //!
 //! `cargo run -p gjk-raycast --example certified_step`, or `cargo run --release … certified_step 1000000` for so many
 //! steps.

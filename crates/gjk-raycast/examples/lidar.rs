@@ -3,8 +3,8 @@
 //! `cargo run --release -p gjk-raycast --features simd --example lidar` tells what it took; with a file name after `--`
 //! it writes the ranges as a picture, a grey map in PGM.
 //!
-//! Rays that hit the robot itself are told first: all of them against a few shapes that do not change, many rays at a
-//! time. What is left is cast into the scene.
+//! Rays that hit the robot itself are sorted out first: all of them against a few shapes that do not change, many
+//! rays at a time. The others are cast into the scene.
 
 #![allow(clippy::print_stdout, reason = "an example talks")]
 

@@ -1,5 +1,5 @@
-//! A robot arm of three joints moves straight in joint space between two configurations. Is the way free, at every time
-//! of it?
+//! A robot arm of three joints moves straight in joint space between two configurations. Is the path free, at every
+//! time?
 //!
 //! `cargo run -p gjk-raycast --example robot_edge`
 

@@ -89,8 +89,7 @@ impl<S: SupportMap + ?Sized> TracedSupport for Single<'_, S> {
 
     #[inline(always)]
     fn hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> Symmetric<<S::Vector as Vector>::Scalar> {
-        let [a, b, d] = self.shape.core_support_hessian(direction, changes).map(|entry| entry * self.per_unit);
-        Symmetric { a, b, d }
+        Symmetric::of(self.shape.core_support_hessian(direction, changes).map(|entry| entry * self.per_unit))
     }
 
     #[inline]
@@ -237,6 +236,32 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
     fn each(&self) -> [Shape<'_, A::Vector>; 2] {
         if self.is_swapped { [&self.b, &self.a] } else { [&self.a, &self.b] }
     }
+}
+
+impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Both<'_, A, B> {
+    /// The two in order, and their cores, which are given as they were named.
+    #[inline(always)]
+    pub(crate) fn in_order(mut self, [a, b]: [Core<A::Vector>; 2]) -> (Self, [Core<A::Vector>; 2]) {
+        self.is_swapped = comes_first(&b, &a);
+        let cores = if self.is_swapped { [b, a] } else { [a, b] };
+        (self, cores)
+    }
+}
+
+/// Whether a body is looked at before another: it is larger, or as large and elsewhere.
+///
+/// Where bodies touch, rounding decides what is found, and the difference `A − B` is not rounded as `B − A` is. So that
+/// all queries about one pair decide alike, whichever body is named first, the larger one comes first.
+#[inline(always)]
+fn comes_first<V: Vector>(a: &Core<V>, b: &Core<V>) -> bool {
+    if a.extent != b.extent {
+        return a.extent > b.extent;
+    }
+    if a.radius != b.radius {
+        return a.radius > b.radius;
+    }
+    let other = (0..V::DIM).find(|&i| a.origin.get(i) != b.origin.get(i));
+    other.is_some_and(|i| a.origin.get(i) > b.origin.get(i))
 }
 
 /// The difference of two shapes, whose support points remember both shapes' points.
@@ -402,9 +427,8 @@ impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
     fn hessian(&self, direction: T::Vector, changes: [T::Vector; 2]) -> Symmetric<<T::Vector as Vector>::Scalar> {
         let a = self.shapes.support_hessian(Of::A, direction, changes);
         let b = self.shapes.support_hessian(Of::B, -direction, changes);
-        let sum = |i: usize| (a[i] + b[i]) * self.per_unit;
-        let whole = Symmetric { a: sum(0), b: sum(1), d: sum(2) };
-        without_ball(whole, self.peeled[0] + self.peeled[1], direction, changes)
+        let whole = [0, 1, 2].map(|i| (a[i] + b[i]) * self.per_unit);
+        without_ball(Symmetric::of(whole), self.peeled[0] + self.peeled[1], direction, changes)
     }
 
     #[inline]
@@ -444,8 +468,8 @@ impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
         direction: T::Vector,
         changes: [T::Vector; 2],
     ) -> Symmetric<<T::Vector as Vector>::Scalar> {
-        let [a, b, d] = self.shapes.support_hessian(Of::A, direction, changes).map(|entry| entry * self.per_unit);
-        without_ball(Symmetric { a, b, d }, self.peeled[0], direction, changes)
+        let whole = self.shapes.support_hessian(Of::A, direction, changes).map(|entry| entry * self.per_unit);
+        without_ball(Symmetric::of(whole), self.peeled[0], direction, changes)
     }
 
     #[inline(always)]

@@ -25,7 +25,7 @@
 
 use convex_support::Scalar;
 
-use crate::symmetric::{Across, Symmetric, dot};
+use crate::symmetric::{Across, Symmetric, dot, turned_left};
 
 /// The weight `β` of the second of two points `P` and `P + e` in the point between them that is closest to zero.
 pub(crate) fn share_of_second<S: Scalar>(p: Across<S>, e: Across<S>) -> S {
@@ -34,7 +34,7 @@ pub(crate) fn share_of_second<S: Scalar>(p: Across<S>, e: Across<S>) -> S {
 
 /// The `δ` with `e·δ = g` and `e⊥·(P + H·δ) = 0`: `δ = (g/e²)·e + s·e⊥`, `s = −e⊥·(P + (g/e²)·H·e) / e⊥·H·e⊥`.
 pub(crate) fn between<S: Scalar>(h: Symmetric<S>, p: Across<S>, e: Across<S>, g: S) -> Across<S> {
-    let across = (-e.1, e.0);
+    let across = turned_left(e);
     let pulled = h.times(across);
     let t = g / dot(e, e);
     let s = -(dot(across, p) + t * dot(e, pulled)) / dot(across, pulled);
@@ -43,7 +43,7 @@ pub(crate) fn between<S: Scalar>(h: Symmetric<S>, p: Across<S>, e: Across<S>, g:
 
 /// Whether `H` tells [`between`] more than rounding across `e`.
 pub(crate) fn is_stiff_across<S: Scalar>(h: Symmetric<S>, e: Across<S>) -> bool {
-    let across = (-e.1, e.0);
+    let across = turned_left(e);
     dot(across, h.times(across)) > S::EPSILON.sqrt() * dot(e, e) * (h.a + h.d)
 }
 

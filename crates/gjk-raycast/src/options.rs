@@ -136,7 +136,7 @@ impl<V: Vector> DistanceOptions<V> {
         Self { extra: Closer::named(), ..Self::lean() }
     }
 
-    /// The default options, with no machine code besides GJK: a program in which all options are lean has a quarter of
+    /// The default options, with no machine code besides GJK: a program in which all options are lean has three tenths of
     /// the code for distances.
     ///
     /// The second measurement near contact is left out: of bodies that are apart, or overlap, by no more than a few

@@ -79,9 +79,9 @@ pub struct SignedDistance<V: Vector> {
     /// infinity where a support map returned numbers that are not finite.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
     pub lower: V::Scalar,
-    /// The signed distance is certainly not more: two points of the shapes are this far apart, or a polytope within the
-    /// difference `A − B` contains a ball of this radius about zero. Infinity where a support map returned numbers that
-    /// are not finite.
+    /// The signed distance is certainly not more: two points of the shapes are this far apart, or, in overlap, the
+    /// difference `A − B` contains the ball of radius `−upper` about zero. Infinity where a support map returned numbers
+    /// that are not finite.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// The unit vector from `b` to `a`. If `a` is moved along it by the depth, the shapes no longer overlap. Where

@@ -1,6 +1,6 @@
 //! Casts that begin in contact: what is known of the contact, and whether the motion goes deeper into it.
 
-use convex_support::{Posed, Scalar, SupportMap, Vector};
+use convex_support::{Posed, Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::cast::sliding;
@@ -97,11 +97,8 @@ impl<V: Vector> StartingPair<'_, V> {
     /// their sizes.
     fn later(&self, velocity: V, per_depth: V::Scalar, start: &SignedDistance<V>, slack: V::Scalar) -> Later<V> {
         let SignedDistance { upper, lower, normal, .. } = *start;
-        let size = |shape: &dyn SupportMap<Vector = V>| {
-            let core = shape.core();
-            core.extent + core.radius
-        };
-        let (size, unit) = (size(self.a) + size(self.b) + self.target, velocity.unit().unwrap_or(V::ZERO));
+        let size = self.a.core().size() + self.b.core().size() + self.target;
+        let unit = velocity.unit().unwrap_or(V::ZERO);
         let mut step = (slack + (upper - lower)) * per_depth * V::Scalar::from_f64(FIRST);
         let mut last = normal;
         for _ in 0..LOOKS {

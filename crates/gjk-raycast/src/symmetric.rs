@@ -15,6 +15,11 @@ pub(crate) struct Symmetric<S> {
 impl<S: Scalar> Symmetric<S> {
     pub(crate) const ZERO: Self = Self { a: S::ZERO, b: S::ZERO, d: S::ZERO };
 
+    /// That of the entries `a`, `b` and `d`.
+    pub(crate) fn of([a, b, d]: [S; 3]) -> Self {
+        Self { a, b, d }
+    }
+
     pub(crate) fn times(self, (x, y): Across<S>) -> Across<S> {
         (self.a * x + self.b * y, self.b * x + self.d * y)
     }
@@ -57,14 +62,26 @@ impl<S: Scalar> Symmetric<S> {
         (trace > S::ZERO && length > S::ZERO).then(|| (trace, (column.0 / length, column.1 / length)))
     }
 
+    /// The mean of both eigenvalues and half their difference, without a sum of squares.
+    fn eigenvalues(self) -> (S, S) {
+        let half = S::from_f64(0.5);
+        ((self.a + self.d) * half, hypot((self.a - self.d) * half, self.b))
+    }
+
+    /// The least eigenvalue.
+    pub(crate) fn least_eigenvalue(self) -> S {
+        let (mean, apart) = self.eigenvalues();
+        // The product of both is the determinant.
+        if mean + apart > S::ZERO { self.determinant() / (mean + apart) } else { mean - apart }
+    }
+
     /// The greatest eigenvalue of a matrix without negative ones, and its unit eigenvector; `None` where that is no
     /// number.
     pub(crate) fn greatest_eigen(self) -> Option<(S, Across<S>)> {
-        let half = S::from_f64(0.5);
-        let (mean, difference) = ((self.a + self.d) * half, (self.a - self.d) * half);
-        let greatest = mean + hypot(difference, self.b);
+        let (mean, apart) = self.eigenvalues();
+        let greatest = mean + apart;
         // (H − λ)·x = 0: of both rows the one that cancels less.
-        let x = if difference > S::ZERO { (greatest - self.d, self.b) } else { (self.b, greatest - self.a) };
+        let x = if self.a > self.d { (greatest - self.d, self.b) } else { (self.b, greatest - self.a) };
         let length = hypot(x.0, x.1);
         (length > S::ZERO).then(|| (greatest, (x.0 / length, x.1 / length)))
     }
@@ -80,6 +97,25 @@ pub(crate) type Across<S> = (S, S);
 
 pub(crate) fn dot<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
     a.0 * b.0 + a.1 * b.1
+}
+
+pub(crate) fn sum<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
+    (a.0 + b.0, a.1 + b.1)
+}
+
+pub(crate) fn scaled<S: Scalar>(a: Across<S>, factor: S) -> Across<S> {
+    (a.0 * factor, a.1 * factor)
+}
+
+/// The vector turned counterclockwise by a right angle.
+pub(crate) fn turned_left<S: Scalar>((x, y): Across<S>) -> Across<S> {
+    (-y, x)
+}
+
+/// The unit vector from a place to another.
+pub(crate) fn direction<S: Scalar>(from: Across<S>, to: Across<S>) -> Across<S> {
+    let e = way(from, to);
+    scaled(e, dot(e, e).sqrt().recip())
 }
 
 /// The way from one place to another.

@@ -2,10 +2,10 @@
 //! neither the support points nor the simplex with it.
 
 use crate::common::behind_pointers::ray_cast;
-use crate::common::{Quaternion, s, turned, v};
+use crate::common::{quaternion, s, turned, v};
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, Scalar, SupportMap, Triangle,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, Scalar, SupportMap, Triangle, Vector3,
     closest_point, support_value,
 };
 use gjk_raycast::{
@@ -19,7 +19,7 @@ type Shape<V> = Box<dyn SupportMap<Vector = V>>;
 const FLAT: usize = 7;
 
 /// One of eight shapes of size about one, turned and moved.
-fn shape<V: Quaternion>(kind: usize, rotation: [f64; 4], place: [f64; 3]) -> Posed<Shape<V>> {
+fn shape<V: Vector3>(kind: usize, rotation: [f64; 4], place: [f64; 3]) -> Posed<Shape<V>> {
     const VALID: &str = "positive sizes";
     let n = s::<V>;
     let shape: Shape<V> = match kind {
@@ -29,22 +29,22 @@ fn shape<V: Quaternion>(kind: usize, rotation: [f64; 4], place: [f64; 3]) -> Pos
         3 => Box::new(Cylinder::<V>::new(n(0.75), n(0.5)).expect(VALID)),
         4 => Box::new(Cone::<V>::new(n(0.75), n(0.5)).expect(VALID)),
         5 => Box::new(
-            Ellipsoid::new(V::ZERO, v::<V>([1.0, 0.5, 0.125]), V::quaternion([0.0, 0.0, 0.0, 1.0])).expect(VALID),
+            Ellipsoid::new(V::ZERO, v::<V>([1.0, 0.5, 0.125]), quaternion::<V>([0.0, 0.0, 0.0, 1.0])).expect(VALID),
         ),
         6 => Box::new(Rounded::new(Cuboid::new(v::<V>([0.5, 0.25, 0.125])).expect(VALID), n(0.25)).expect(VALID)),
         _ => Box::new(
             Triangle::new([v::<V>([1.0, 0.0, 0.25]), v([-0.75, 0.5, 0.0]), v([-0.5, -1.0, -0.25])]).expect(VALID),
         ),
     };
-    turned(shape, V::quaternion(rotation), place)
+    turned(shape, quaternion::<V>(rotation), place)
 }
 
-fn algorithm_1<V: Quaternion>(target: &Posed<Shape<V>>, ray: Ray<V>) -> RayCast<V> {
+fn algorithm_1<V: Vector3>(target: &Posed<Shape<V>>, ray: Ray<V>) -> RayCast<V> {
     iterative_ray_cast(|x| closest_point(&target, x), ray, RayCastOptions::default()).expect("a finite ray")
 }
 
 /// Both find the same, wherever the source is. Where the surface is met at an angle, errors grow by its cosine.
-fn agree<V: Quaternion>(
+fn agree<V: Vector3>(
     kind: usize,
     rotation: [f64; 4],
     aim: [f64; 3],
@@ -113,7 +113,7 @@ const DIAMETER: f64 = 2.5;
 
 /// The distance of the ray from the shape up to twice its direction: it falls and then rises, so a third can be cut
 /// off.
-fn nearest<V: Quaternion>(target: &Posed<Shape<V>>, ray: Ray<V>) -> f64 {
+fn nearest<V: Vector3>(target: &Posed<Shape<V>>, ray: Ray<V>) -> f64 {
     let distance = |lambda: f64| {
         let x = ray.at(s::<V>(lambda));
         (x - closest_point(target, x).expect("a closed form")).norm().as_f64()
@@ -174,7 +174,7 @@ fn a_quarter_or_more_of_the_rays_hit_and_as_many_miss() {
 /// before the body or stepped through.
 #[test]
 fn a_far_source_loses_only_its_own_digits() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let ball = shape::<V>(1, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);
         for d in crate::common::directions(100) {
             let from = d.map(|c| -1e6 * c);

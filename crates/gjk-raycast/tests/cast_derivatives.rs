@@ -38,13 +38,13 @@ fn all_pairs<V: Space, const N: usize>(
 
 /// A velocity that leads one body about to the other.
 fn towards<V: Space>(a: &Body<V>, b: &Body<V>, random: &mut Random) -> V {
-    b.shape.translation() - a.shape.translation() + random.vector::<V>() * 0.3
+    b.shape.translation() - a.shape.translation() + random.vector::<V>(1.0) * 0.3
 }
 
 fn compare_linear<V: Space>(a: &Body<V>, b: &Body<V>, random: &mut Random, all: &mut [Comparison; 4], what: &str) {
-    let motion = Motion { velocity_a: towards(a, b, random), velocity_b: random.vector::<V>() * 0.3 };
+    let motion = Motion { velocity_a: towards(a, b, random), velocity_b: random.vector::<V>(1.0) * 0.3 };
     let (change_a, change_b) = (random.motion(), random.motion());
-    let (faster_a, faster_b) = (random.vector::<V>(), random.vector::<V>());
+    let (faster_a, faster_b) = (random.vector::<V>(1.0), random.vector::<V>(1.0));
     let cast = |[poses, velocities, radius]: [f64; 3]| -> Option<Impact<V>> {
         let motion = Motion {
             velocity_a: motion.velocity_a + faster_a * velocities,
@@ -143,7 +143,7 @@ fn times_of_motion_casts_change_as_differences_say() {
 
 fn compare_ray<V: Space>(target: &Body<V>, from: &Body<V>, random: &mut Random, all: &mut [Comparison; 4], what: &str) {
     let ray = Ray { source: from.shape.translation(), direction: towards(from, target, random) };
-    let (pose, source, direction) = (random.motion(), random.vector::<V>(), random.vector::<V>());
+    let (pose, source, direction) = (random.motion(), random.vector::<V>(1.0), random.vector::<V>(1.0));
     let cast = |[moved, shifted, turned, grown]: [f64; 4]| -> Option<RayHit<V>> {
         let target = Rounded::new(target.moved(&pose, moved), RADIUS + grown).expect(VALID);
         let ray = Ray { source: ray.source + source * shifted, direction: ray.direction + direction * turned };

@@ -1,9 +1,11 @@
 //! Where one core is a point and the other says its closest one, or both are segments, that is where a descent begins,
 //! and mostly ends.
 
-use crate::common::{Plain, Quaternion, at, cuboid, s, turned, ulps, v};
+use crate::common::{Plain, at, cuboid, quaternion, s, turned, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Vec3A};
-use convex_support::{Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Rounded, Scalar, Segment, SupportMap, Triangle};
+use convex_support::{
+    Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Rounded, Scalar, Segment, SupportMap, Triangle, Vector3,
+};
 use gjk_raycast::{
     DistanceOptions, IntersectOptions, SignedDistanceOptions, Status, distance, intersects, signed_distance,
 };
@@ -11,9 +13,9 @@ use num_traits::Float as _;
 
 const VALID: &str = "positive sizes";
 
-fn bodies<V: Quaternion>() -> Vec<(&'static str, Box<dyn SupportMap<Vector = V>>)> {
+fn bodies<V: Vector3>() -> Vec<(&'static str, Box<dyn SupportMap<Vector = V>>)> {
     let n = s::<V>;
-    let rotation = V::quaternion([0.1, 0.2, 0.3, 0.9]);
+    let rotation = quaternion::<V>([0.1, 0.2, 0.3, 0.9]);
     vec![
         ("point", Box::new(Point::new(v::<V>([0.3, -0.2, 0.1])).expect(VALID))),
         ("ball", Box::new(Ball::<V>::new(n(0.75)).expect(VALID))),
@@ -44,7 +46,7 @@ fn centres() -> impl Iterator<Item = [f64; 3]> {
 /// lead to.
 #[test]
 fn a_ball_needs_one_support_point() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for (name, body) in bodies::<V>() {
             let plain = Plain(&body);
             for centre in centres() {
@@ -82,16 +84,16 @@ fn a_ball_needs_one_support_point() {
 /// parallel and as short as balls.
 #[test]
 fn two_capsules_need_one_too() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let turns = [[0.0, 0.0, 0.0, 1.0], [1e-7, 0.0, 0.0, 1.0], [0.3, 0.2, -0.4, 0.8], [0.7, 0.0, 0.1, 0.7]];
         let capsules = [(1.0, 0.25), (0.5, 0.03), (1e-6, 0.3)];
         for (turn, (centre, (half_height, radius))) in
             centres().enumerate().map(|(i, centre)| (turns[i % 4], (centre, capsules[i % 3])))
         {
             let fixed =
-                turned(Capsule::<V>::new(s::<V>(1.0), s::<V>(0.25)).expect(VALID), V::quaternion(turns[2]), [0.0; 3]);
+                turned(Capsule::<V>::new(s::<V>(1.0), s::<V>(0.25)).expect(VALID), quaternion::<V>(turns[2]), [0.0; 3]);
             let body = Capsule::<V>::new(s::<V>(half_height), s::<V>(radius)).expect(VALID);
-            let body = turned(body, V::quaternion(turn), centre);
+            let body = turned(body, quaternion::<V>(turn), centre);
             is_known_between(&fixed, &body);
             // The same by their ends, as users build links of robots: once where they are, and once turned and moved.
             let upright = |half_height: f64| [-1.0, 1.0].map(|end| v::<V>([0.5, half_height * end, 0.25]));
@@ -99,10 +101,10 @@ fn two_capsules_need_one_too() {
             let there = [fixed.shape().half_height(), -fixed.shape().half_height()]
                 .map(|y| fixed.rotation() * (V::axis(1) * y));
             let fixed_link = Rounded::new(Segment::new(there).expect(VALID), s::<V>(0.25)).expect(VALID);
-            is_known_between(&fixed_link, &turned(link, V::quaternion(turn), centre));
+            is_known_between(&fixed_link, &turned(link, quaternion::<V>(turn), centre));
             is_known_between(
                 &fixed,
-                &turned(turned(link, V::quaternion(turns[1]), centre), V::quaternion(turn), centre),
+                &turned(turned(link, quaternion::<V>(turns[1]), centre), quaternion::<V>(turn), centre),
             );
         }
     }

@@ -11,10 +11,6 @@ use convex_support::{
 use gjk_raycast::{SignedDistance, SignedDistanceOptions, Status};
 
 impl Random {
-    fn within<V: Vector>(&mut self, size: f64) -> V {
-        V::from_fn(|_| s::<V>(self.number(-size, size)))
-    }
-
     /// From `least` to one, by its logarithm.
     fn length(&mut self, least: f64) -> f64 {
         self.number(least.ln(), 0.0).exp()
@@ -88,7 +84,7 @@ fn boxes<V: Vector>(seed: u64, turn: impl Fn(&mut Random, f64) -> V::Rotation) {
         let both = turn(&mut random, 1.0);
         let (turn_a, turn_b) = (turn(&mut random, lean), turn(&mut random, lean));
         // Stacked, or anywhere within half of both.
-        let reach = (a.half_extents() + b.half_extents()) * random.within::<V>(0.999);
+        let reach = (a.half_extents() + b.half_extents()) * random.vector::<V>(0.999);
         let place = |shape, rotation, at| {
             let posed = Posed::new(shape, rotation, at).expect("a pose");
             Posed::new(posed, both, V::axis(0) * s::<V>(scale)).expect("a pose")
@@ -108,12 +104,12 @@ fn boxes<V: Vector>(seed: u64, turn: impl Fn(&mut Random, f64) -> V::Rotation) {
 
 #[test]
 fn boxes_in_space() {
-    boxes::<DVec3>(0x9E37_79B9_7F4A_7C15, |random, angle| DQuat::from_scaled_axis(random.within::<DVec3>(angle)));
+    boxes::<DVec3>(0x9E37_79B9_7F4A_7C15, |random, angle| DQuat::from_scaled_axis(random.vector::<DVec3>(angle)));
 }
 
 #[test]
 fn boxes_in_single_precision() {
-    let turn = |random: &mut Random, angle| Quat::from_scaled_axis(random.within::<convex_support::glam::Vec3>(angle));
+    let turn = |random: &mut Random, angle| Quat::from_scaled_axis(random.vector::<convex_support::glam::Vec3>(angle));
     boxes::<Vec3A>(0xD1B5_4A32_D192_ED03, turn);
 }
 
@@ -126,14 +122,14 @@ fn rectangles_in_the_plane() {
 fn sheared_boxes_segments_and_points() {
     let mut random = Random(0x2545_F491_4F6C_DD1D);
     for _ in 0..1000 {
-        let matrix = Matrix::from_cols_fn(|_| random.within::<DVec3>(1.0));
+        let matrix = Matrix::from_cols_fn(|_| random.vector::<DVec3>(1.0));
         let sheared =
-            Affine::new(Cuboid::new(DVec3::ONE).expect("positive"), matrix, random.within(0.3)).expect("a map");
+            Affine::new(Cuboid::new(DVec3::ONE).expect("positive"), matrix, random.vector(0.3)).expect("a map");
         let cuboid = Cuboid::new(random.half_extents(0.1)).expect("positive");
         let _ = agree(&sheared, &cuboid);
-        let segment = Segment::new([random.within(1.0), random.within(1.0)]).expect("finite");
+        let segment = Segment::new([random.vector(1.0), random.vector(1.0)]).expect("finite");
         let _ = agree(&segment, &cuboid);
-        let ball = Posed::translated(Ball::new(0.2).expect("positive"), random.within(1.0)).expect("at");
+        let ball = Posed::translated(Ball::new(0.2).expect("positive"), random.vector(1.0)).expect("at");
         let _ = agree(&ball, &cuboid);
     }
 }
@@ -147,8 +143,8 @@ fn boxes_are_polytopes() {
             (0..8).map(|i| half * <DVec3 as Vector>::from_fn(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 }));
         let (cuboid, polytope) = (Cuboid::new(half).expect("positive"), Polytope::new(corners).expect("finite"));
         let other = Cuboid::new(random.half_extents(0.1)).expect("positive");
-        let rotation = DQuat::from_scaled_axis(random.within(2.0));
-        let other = Posed::new(other, rotation, random.within(0.7)).expect("a pose");
+        let rotation = DQuat::from_scaled_axis(random.vector(2.0));
+        let other = Posed::new(other, rotation, random.vector(0.7)).expect("a pose");
         let (quick, slow) = (ask(&cuboid, &other), ask(&polytope, &other));
         assert!(quick.lower <= slow.upper && slow.lower <= quick.upper, "{quick:?}\n{slow:?}");
     }
@@ -172,15 +168,15 @@ fn ellipsoids_lose_their_balls() {
     for round in 0..400 {
         let least = [0.5, 0.9, 0.2][round % 3];
         let ellipsoid = |random: &mut Random, at| {
-            let rotation = DQuat::from_scaled_axis(random.within(2.0));
+            let rotation = DQuat::from_scaled_axis(random.vector(2.0));
             Ellipsoid::new(at, random.half_extents(least), rotation).expect("positive")
         };
-        let at = random.within::<DVec3>(1.2);
+        let at = random.vector::<DVec3>(1.2);
         let (a, b) = (ellipsoid(&mut random, at), ellipsoid(&mut random, DVec3::ZERO));
         let answer = agree(&a, &b);
         shallow += usize::from(answer.overlap && answer.unexpanded == 0 && answer.upper - answer.lower < 1e-13);
         let cuboid = Cuboid::new(random.half_extents(0.3)).expect("positive");
-        let turned = Posed::new(a, DQuat::from_scaled_axis(random.within(2.0)), DVec3::ZERO).expect("a pose");
+        let turned = Posed::new(a, DQuat::from_scaled_axis(random.vector(2.0)), DVec3::ZERO).expect("a pose");
         let _ = agree(&turned, &cuboid);
         let scaled = Affine::new(a, DMat3::from_diagonal(DVec3::splat(2.0)), DVec3::ZERO);
         let _ = agree(&scaled.expect("a map"), &cuboid);

@@ -22,7 +22,7 @@ fn placed(shape: Boxed, turn: DQuat, at: DVec3, world: (DQuat, DVec3)) -> Body<D
 /// Two bodies of which `a` is above `b` by a gap, negative for a depth, with parallel faces or edges; the kinds count
 /// from 0.
 fn parallel(kind: usize, gap: f64, random: &mut Random) -> [Body<DVec3>; 2] {
-    let world = (DVec3::rotation(random), random.vector::<DVec3>());
+    let world = (DVec3::rotation(random), random.vector::<DVec3>(1.0));
     let spin = DQuat::from_rotation_y(random.number(0.0, 6.0));
     let size = |random: &mut Random| DVec3::from_array([0; 3].map(|_| random.number(0.6, 1.0)));
     let (sa, sb) = (size(random), size(random));
@@ -88,7 +88,7 @@ fn faces_of_curved_bodies_are_no_smooth_place() {
         (shape, h)
     };
     for round in 0..3000 {
-        let world = (DVec3::rotation(&mut random), random.vector::<DVec3>());
+        let world = (DVec3::rotation(&mut random), random.vector::<DVec3>(1.0));
         let mut size = || [0; 2].map(|_| random.number(0.3, 1.0));
         let (mut a, mut low) = upright(round % 2, size());
         let (mut b, mut top) = upright(round / 2 % 2, size());
@@ -179,7 +179,7 @@ fn one_sided_rates_are_those_of_differences() {
 fn faces_that_have_an_edge_or_a_corner_in_common_have_one_sided_rates() {
     let mut random = Random(11);
     for round in 0..400 {
-        let world = (DVec3::rotation(&mut random), random.vector::<DVec3>());
+        let world = (DVec3::rotation(&mut random), random.vector::<DVec3>(1.0));
         let cuboid = |s: DVec3| -> Boxed { std::rc::Rc::new(Cuboid::new(s).expect(VALID)) };
         let lying = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
         // Beside one another, but for a gap above: seen from above they have an edge in common, a part of one, or a
@@ -274,7 +274,7 @@ fn equal_ways_out_are_an_edge() {
             .expect(VALID);
     let mut random = Random(9);
     for round in 0..200 {
-        let world = (DVec3::rotation(&mut random), random.vector::<DVec3>());
+        let world = (DVec3::rotation(&mut random), random.vector::<DVec3>(1.0));
         let lead = if round % 2 == 0 { 0.0 } else { 1e-7 };
         // It reaches back by 0.3 along x and along y.
         let at = DVec3::new(1.0 + lead, 1.0, random.number(-0.5, 0.5));

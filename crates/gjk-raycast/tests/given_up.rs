@@ -14,10 +14,6 @@ use gjk_raycast::{
 
 type Shape = Box<dyn SupportMap<Vector = DVec3>>;
 
-fn vector(random: &mut Random, size: f64) -> DVec3 {
-    DVec3::from_array([0; 3].map(|_| random.number(-size, size)))
-}
-
 /// A shape of some kind, of sizes up to 1, in a pose.
 fn solid(random: &mut Random, kind: usize, place: DVec3) -> Shape {
     let [x, y, z] = [0; 3].map(|_| random.number(0.1, 1.0));
@@ -134,12 +130,12 @@ impl Case {
 fn what_was_proved_before_a_search_is_given_up_is_true() {
     let mut random = Random(0x1234_5678_9abc);
     for i in 0..49 {
-        let place = vector(&mut random, 1.5);
+        let place: DVec3 = random.vector(1.5);
         let bodies = [solid(&mut random, i, place), solid(&mut random, i / 7, DVec3::ZERO)];
-        let velocity = [vector(&mut random, 1.0) - place, vector(&mut random, 0.5)];
-        let spin = [vector(&mut random, 1.0), vector(&mut random, 1.0)];
-        let source = vector(&mut random, 4.0);
-        let ray = Ray { source, direction: place - source + vector(&mut random, 0.5) };
+        let velocity = [random.vector::<DVec3>(1.0) - place, random.vector(0.5)];
+        let spin = [random.vector(1.0), random.vector(1.0)];
+        let source: DVec3 = random.vector(4.0);
+        let ray = Ray { source, direction: place - source + random.vector::<DVec3>(0.5) };
         let case = Case { bodies, velocity, spin, ray };
         let full = case.told(None);
         for most in [0, 1, 2, 3, 5, 8] {

@@ -4,10 +4,11 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2, TAU};
 
 use crate::common::behind_pointers::motion_cast;
+use crate::common::space::{Space, spin};
 use crate::common::{Random, s, v};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rotation, Scalar, Segment, SupportMap, Vector, Vector3,
+    Ball, Capsule, Cuboid, Ellipsoid, Polytope, Posed, Rotation, Scalar, Segment, SupportMap, Vector,
 };
 use gjk_raycast::{
     ChainMotion, HalfSpace, MotionCast, MotionCastOptions, Outcome, RayCastError, RigidMotion, StartInContact, Status,
@@ -248,52 +249,6 @@ fn what_is_no_body_is_not_decided() {
 
 type Shape<V> = Box<dyn SupportMap<Vector = V>>;
 
-/// The vectors, and what they have beside.
-trait Space: Vector {
-    fn spin(w: [f64; 3]) -> Self::AngularVelocity;
-    fn cylinder(half_height: f64, radius: f64) -> Option<Shape<Self>>;
-}
-
-fn cylinder<V: Vector3>(half_height: f64, radius: f64) -> Option<Shape<V>> {
-    Some(Box::new(Cylinder::<V>::new(s::<V>(half_height), s::<V>(radius)).expect("positive")))
-}
-
-impl Space for DVec3 {
-    fn spin(w: [f64; 3]) -> Self {
-        v(w)
-    }
-    fn cylinder(half_height: f64, radius: f64) -> Option<Shape<Self>> {
-        cylinder(half_height, radius)
-    }
-}
-
-impl Space for Vec3A {
-    fn spin(w: [f64; 3]) -> Self {
-        v(w)
-    }
-    fn cylinder(half_height: f64, radius: f64) -> Option<Shape<Self>> {
-        cylinder(half_height, radius)
-    }
-}
-
-impl Space for DVec2 {
-    fn spin(w: [f64; 3]) -> f64 {
-        w[2]
-    }
-    fn cylinder(_: f64, _: f64) -> Option<Shape<Self>> {
-        None
-    }
-}
-
-impl Space for Vec2 {
-    fn spin(w: [f64; 3]) -> f32 {
-        w[2] as f32
-    }
-    fn cylinder(_: f64, _: f64) -> Option<Shape<Self>> {
-        None
-    }
-}
-
 /// A body that moves over a half-space, all in numbers that are exact in the precision it is asked in.
 #[derive(Debug)]
 struct Case {
@@ -348,12 +303,12 @@ impl Case {
             1 => Box::new(Capsule::<V>::new(x, y).expect("positive")),
             2 => Box::new(Ellipsoid::new(V::ZERO, vector(self.sizes), V::Rotation::default()).expect("positive")),
             3 => Box::new(Polytope::new(self.corners.iter().map(|&corner| vector(corner))).expect("finite")),
-            _ => V::cylinder(self.sizes.x, self.sizes.y).expect("in space"),
+            _ => V::upright(0, s::<V>(self.sizes.x), s::<V>(self.sizes.y)).expect("in space"),
         };
         let rotation = V::Rotation::from_xyzw(self.rotation.to_array().map(s::<V>));
         let motion = RigidMotion {
             velocity: vector(self.velocity),
-            angular_velocity: V::spin(self.spin.to_array()),
+            angular_velocity: spin::<V>(self.spin.to_array()),
             center: vector(self.center),
         };
         let half_space = HalfSpace::new(vector(self.normal), s::<V>(self.offset)).expect("a normal");

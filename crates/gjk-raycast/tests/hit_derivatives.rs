@@ -65,8 +65,8 @@ fn is_mended<V: Space, H: Hit<V>>(
         return false;
     }
     let sure = hit.mended(&at).place();
-    let normal = sure.0 + random.vector::<V>() * WORSE;
-    let worse = hit.with(normal / normal.length(), sure.1 + random.vector::<V>() * WORSE);
+    let normal = sure.0 + random.vector::<V>(1.0) * WORSE;
+    let worse = hit.with(normal / normal.length(), sure.1 + random.vector::<V>(1.0) * WORSE);
     let found = features(worse).expect("what touches has features");
     assert_eq!(found.smoothness(), Smoothness::Smooth, "{what}: {found:?}");
     let again = worse.mended(&found).place();
@@ -77,7 +77,7 @@ fn is_mended<V: Space, H: Hit<V>>(
 
 /// A velocity that leads one body about to the other.
 fn towards<V: Space>(a: &Body<V>, b: &Body<V>, random: &mut Random) -> V {
-    b.shape.translation() - a.shape.translation() + random.vector::<V>() * 0.3
+    b.shape.translation() - a.shape.translation() + random.vector::<V>(1.0) * 0.3
 }
 
 fn all_hits_are_mended<V: Space>(seed: u64, rounds: usize) {
@@ -91,7 +91,7 @@ fn all_hits_are_mended<V: Space>(seed: u64, rounds: usize) {
         let (a, b) = (&a, &b);
         let what = |which: &str| format!("{which} of {} and {}, round {round}", kinds[i], kinds[j]);
 
-        let motion = Motion { velocity_a: towards(a, b, &mut random), velocity_b: random.vector::<V>() * 0.3 };
+        let motion = Motion { velocity_a: towards(a, b, &mut random), velocity_b: random.vector::<V>(1.0) * 0.3 };
         let cast = linear_cast(&a.shape, &b.shape, motion, LinearCastOptions::new()).expect("finite");
         if let Some(hit) = cast.outcome.hit().filter(|hit| hit.normal.is_some()) {
             let [ma, mb] = motion.translations();
@@ -133,7 +133,7 @@ fn hits_that_are_known_badly_are_mended_in_the_plane() {
 /// direction up. Aside it stands by a part of the sizes of both: by all of them their faces have an edge or a corner in
 /// common.
 fn stacked<V: Space>(gap: f64, aside: f64, random: &mut Random) -> ([Body<V>; 2], V) {
-    let (turn, world) = (V::rotation(random), random.vector::<V>());
+    let (turn, world) = (V::rotation(random), random.vector::<V>(1.0));
     let size = |random: &mut Random| V::from_fn(|_| random.number(0.4, 1.0));
     let (sa, sb) = (size(random), size(random));
     let body = |half_extents: V, at: V| {
@@ -192,7 +192,8 @@ fn rates_of_linear_casts<V: Space>(seed: u64) {
     are_those_of_differences(200, |round| {
         let ([a, b], up) = stacked::<V>(0.4, ASIDE[round % 3], &mut random);
         // Aside by no more than leaves it above the other.
-        let motion = Motion { velocity_a: random.vector::<V>() * 0.05 - up, velocity_b: random.vector::<V>() * 0.05 };
+        let motion =
+            Motion { velocity_a: random.vector::<V>(1.0) * 0.05 - up, velocity_b: random.vector::<V>(1.0) * 0.05 };
         let [ma, mb] = [random.motion::<V>(), random.motion()];
         let options = LinearCastOptions::new();
         let hit = linear_cast(&a.shape, &b.shape, motion, options).expect("finite").outcome.hit().expect("it lands");

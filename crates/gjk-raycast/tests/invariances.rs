@@ -1,11 +1,12 @@
 //! What an answer does not depend on: the unit of length, the order of the bodies, the direction the search begins
 //! with.
 
+use crate::common::space::{Space, spin};
+use crate::common::strategies::{rotation, vector};
 use crate::common::ulps;
-use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3A};
+use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3A, Vec3Swizzles as _};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Polytope, Posed, Rounded, Scalar, SupportMap,
-    Vector,
+    Ball, Capsule, Cuboid, Ellipsoid, InvalidShape, Polytope, Posed, Rounded, Scalar, SupportMap, Vector,
 };
 use gjk_raycast::{
     ChainMotion, ClosestFeatures, Contact, Distance, DistanceOptions, HalfSpace, LinearCast, LinearCastOptions, Motion,
@@ -17,51 +18,10 @@ use proptest::prelude::*;
 
 type Shape<V> = Box<dyn SupportMap<Vector = V>>;
 
-/// One of eight shapes, of sizes `d` and at a pose, scaled by `unit`.
-fn shape(kind: usize, d: DVec3, rotation: DQuat, place: DVec3, unit: f64) -> Result<Shape<DVec3>, InvalidShape> {
-    let s = d * unit;
-    let shape: Shape<DVec3> = match kind {
-        0 => Box::new(Cuboid::new(s)?),
-        1 => Box::new(Ball::new(s.x)?),
-        2 => Box::new(Capsule::<DVec3>::new(s.x, s.y)?),
-        3 => Box::new(Cylinder::<DVec3>::new(s.x, s.y)?),
-        4 => Box::new(Cone::<DVec3>::new(s.x, s.y)?),
-        5 => Box::new(Ellipsoid::new(DVec3::ZERO, s, DQuat::IDENTITY)?),
-        6 => Box::new(Rounded::new(Cuboid::new(s)?, s.z)?),
-        _ => Box::new(Polytope::new([s, -s, s.yzx(), -s.zxy(), DVec3::new(-s.x, s.z, s.y)])?),
-    };
-    Ok(Box::new(Posed::new(shape, rotation, place * unit)?))
-}
-
-trait Swizzle {
-    fn yzx(self) -> Self;
-    fn zxy(self) -> Self;
-}
-
-impl Swizzle for DVec3 {
-    fn yzx(self) -> Self {
-        Self::new(self.y, self.z, self.x)
-    }
-
-    fn zxy(self) -> Self {
-        Self::new(self.z, self.x, self.y)
-    }
-}
-
-fn vector(reach: f64) -> impl Strategy<Value = DVec3> {
-    (-reach..reach, -reach..reach, -reach..reach).prop_map(|(x, y, z)| DVec3::new(x, y, z))
-}
-
 /// Sizes of moderate or of wild aspect.
 fn sizes() -> impl Strategy<Value = DVec3> {
     let size = || prop_oneof![3 => 0.2..1.5, 1 => Just(1e-3), 1 => Just(1e-6)];
     (size(), size(), size()).prop_map(|(x, y, z)| DVec3::new(x, y, z))
-}
-
-fn rotation() -> impl Strategy<Value = DQuat> {
-    (vector(1.0), -3.0..3.0)
-        .prop_filter("an axis", |(axis, _)| axis.length() > 0.1)
-        .prop_map(|(axis, angle)| DQuat::from_axis_angle(axis.normalize(), angle))
 }
 
 /// Two bodies, and a motion.
@@ -74,70 +34,36 @@ struct Scene {
     spin: DVec3,
 }
 
-/// The bodies of a space: some have a third dimension only.
-trait Space: Vector {
-    fn upright(kind: usize, half_height: Self::Scalar, radius: Self::Scalar) -> Result<Shape<Self>, InvalidShape>;
+/// A space, and how it is turned.
+trait Turned: Space {
     fn turn(rotation: DQuat) -> Self::Rotation;
-    fn spin(spin: DVec3) -> Self::AngularVelocity;
 }
 
-fn in_space<V: convex_support::Vector3>(kind: usize, h: V::Scalar, r: V::Scalar) -> Result<Shape<V>, InvalidShape> {
-    Ok(if kind == 3 { Box::new(Cylinder::<V>::new(h, r)?) } else { Box::new(Cone::<V>::new(h, r)?) })
-}
-
-fn in_the_plane<V: Vector>(h: V::Scalar, r: V::Scalar) -> Result<Shape<V>, InvalidShape> {
-    Ok(Box::new(Capsule::<V>::new(h, r)?))
-}
-
-impl Space for DVec3 {
-    fn upright(kind: usize, half_height: f64, radius: f64) -> Result<Shape<Self>, InvalidShape> {
-        in_space(kind, half_height, radius)
-    }
+impl Turned for DVec3 {
     fn turn(rotation: DQuat) -> DQuat {
         rotation
     }
-    fn spin(spin: DVec3) -> Self {
-        spin
-    }
 }
 
-impl Space for Vec3A {
-    fn upright(kind: usize, half_height: f32, radius: f32) -> Result<Shape<Self>, InvalidShape> {
-        in_space(kind, half_height, radius)
-    }
+impl Turned for Vec3A {
     fn turn(rotation: DQuat) -> Self::Rotation {
         rotation.as_quat()
     }
-    fn spin(spin: DVec3) -> Self::AngularVelocity {
-        spin.as_vec3a()
-    }
 }
 
-impl Space for DVec2 {
-    fn upright(_: usize, half_height: f64, radius: f64) -> Result<Shape<Self>, InvalidShape> {
-        in_the_plane(half_height, radius)
-    }
+impl Turned for DVec2 {
     fn turn(rotation: DQuat) -> f64 {
         4.0 * rotation.x
     }
-    fn spin(spin: DVec3) -> f64 {
-        spin.z
-    }
 }
 
-impl Space for Vec2 {
-    fn upright(_: usize, half_height: f32, radius: f32) -> Result<Shape<Self>, InvalidShape> {
-        in_the_plane(half_height, radius)
-    }
+impl Turned for Vec2 {
     fn turn(rotation: DQuat) -> f32 {
         4.0 * rotation.as_quat().x
     }
-    fn spin(spin: DVec3) -> f32 {
-        spin.as_vec3a().z
-    }
 }
 
-fn solid<V: Space>(
+fn solid<V: Turned>(
     kind: usize,
     d: DVec3,
     turn: DQuat,
@@ -150,7 +76,10 @@ fn solid<V: Space>(
         0 => Box::new(Cuboid::new(to(d))?),
         1 => Box::new(Ball::new(number(d.x))?),
         2 => Box::new(Capsule::<V>::new(number(d.x), number(d.y))?),
-        3 | 4 => V::upright(kind, number(d.x), number(d.y))?,
+        3 | 4 => match V::upright(kind - 3, number(d.x), number(d.y)) {
+            Some(shape) => shape,
+            None => Box::new(Capsule::<V>::new(number(d.x), number(d.y))?),
+        },
         5 => Box::new(Ellipsoid::new(V::ZERO, to(d), V::turn(DQuat::IDENTITY))?),
         6 => Box::new(Rounded::new(Cuboid::new(to(d))?, number(d.z))?),
         _ => Box::new(Polytope::new([d, -d, d.yzx(), -d.zxy(), DVec3::new(-d.x, d.z, d.y)].map(to))?),
@@ -216,7 +145,7 @@ impl Numbers {
         }
     }
 
-    fn features<V: Space>(&mut self, features: &ClosestFeatures<V>) {
+    fn features<V: Turned>(&mut self, features: &ClosestFeatures<V>) {
         [features.point_a(), features.point_b()].into_iter().for_each(|p| self.place(p));
         self.direction(Some(features.normal()));
         self.count(features.smoothness() as usize);
@@ -278,7 +207,7 @@ impl Numbers {
 }
 
 /// Every query about a scene, in a unit of length.
-fn asked<V: Space>(scene: &Scene, exponent: i32) -> Vec<(&'static str, f64)> {
+fn asked<V: Turned>(scene: &Scene, exponent: i32) -> Vec<(&'static str, f64)> {
     let unit = V::Scalar::from_f64(2.0_f64.powi(exponent));
     let to = |p: DVec3| V::from_fn(|i| V::Scalar::from_f64(p[i])) * unit;
     let number = |x: f64| V::Scalar::from_f64(x) * unit;
@@ -324,8 +253,9 @@ fn asked<V: Space>(scene: &Scene, exponent: i32) -> Vec<(&'static str, f64)> {
     numbers.cast(outcome, |hit| (hit.lambda, hit.point, hit.normal), [lower, upper], (status, iterations));
 
     numbers.query = "motion_cast";
-    let turning = RigidMotion { velocity, angular_velocity: V::spin(scene.spin), center: to(scene.sizes.1) };
-    let joints = [turning, RigidMotion::rotation(V::spin(scene.spin.yzx()), to(scene.sizes.0))];
+    let turning =
+        RigidMotion { velocity, angular_velocity: spin::<V>(scene.spin.to_array()), center: to(scene.sizes.1) };
+    let joints = [turning, RigidMotion::rotation(spin::<V>(scene.spin.yzx().to_array()), to(scene.sizes.0))];
     let (rest, chain) = (RigidMotion::default(), ChainMotion::new(&joints));
     let options = MotionCastOptions::new().with_max_time(V::Scalar::from_f64(1.5)).with_max_iterations(100);
     let near = options.with_target_distance(number(0.125));
@@ -363,7 +293,7 @@ fn asked<V: Space>(scene: &Scene, exponent: i32) -> Vec<(&'static str, f64)> {
 }
 
 /// Every query in two units: every number that is a length is scaled, and every other is the same, to the bit.
-fn scaled<V: Space>(scene: &Scene, exponent: i32) -> Result<(), TestCaseError> {
+fn scaled<V: Turned>(scene: &Scene, exponent: i32) -> Result<(), TestCaseError> {
     let (small, big) = (asked::<V>(scene, 0), asked::<V>(scene, exponent));
     let differ = small.iter().zip(&big).find(|(x, y)| x != y && !(x.1.is_nan() && y.1.is_nan()));
     prop_assert!(small.len() == big.len() && differ.is_none(), "2^{}: {:?}", exponent, differ);
@@ -398,7 +328,7 @@ proptest! {
 
 /// The brackets of the answers about two bodies, in units of the scene's lengths; of what is decided without a number,
 /// what it says of one.
-fn brackets<V: Space>(scene: &Scene, unit: V::Scalar) -> Vec<(&'static str, [f64; 2])> {
+fn brackets<V: Turned>(scene: &Scene, unit: V::Scalar) -> Vec<(&'static str, [f64; 2])> {
     let to = |p: DVec3| V::from_fn(|i| V::Scalar::from_f64(p[i])) * unit;
     let bodies = (
         solid::<V>(scene.kinds.0, scene.sizes.0, scene.turns.0, DVec3::ZERO, unit),
@@ -432,7 +362,11 @@ fn brackets<V: Space>(scene: &Scene, unit: V::Scalar) -> Vec<(&'static str, [f64
     let [lower, upper] =
         ray_cast(&a, ray, Default::default()).map_or([zero, infinity], |cast| [cast.lower, cast.upper]);
     bounds("ray cast", lower, upper, one);
-    let turning = RigidMotion { velocity: to(scene.velocity), angular_velocity: V::spin(scene.spin), center: V::ZERO };
+    let turning = RigidMotion {
+        velocity: to(scene.velocity),
+        angular_velocity: spin::<V>(scene.spin.to_array()),
+        center: V::ZERO,
+    };
     let options = MotionCastOptions::new().with_max_time(one).with_max_iterations(100);
     let cast = motion_cast(&a, turning, &b, RigidMotion::default(), options).map(|cast| [cast.lower, cast.upper]);
     let [lower, upper] = cast.unwrap_or([zero, infinity]);
@@ -443,7 +377,7 @@ fn brackets<V: Space>(scene: &Scene, unit: V::Scalar) -> Vec<(&'static str, [f64
 /// Beyond the range in which the unit does not matter an answer may be wider, undecided or refused, but not false:
 /// numbers that the scalar can hold are asked about twice, as they are and in a unit in which nothing under- or
 /// overflows.
-fn held<V: Space>(mut scene: Scene, exponent: i32) -> Result<(), TestCaseError> {
+fn held<V: Turned>(mut scene: Scene, exponent: i32) -> Result<(), TestCaseError> {
     let unit = V::Scalar::from_f64(2.0_f64.powi(exponent));
     let held = |p: DVec3| DVec3::from_array(p.to_array().map(|x| (V::Scalar::from_f64(x) * unit / unit).as_f64()));
     scene.sizes = (held(scene.sizes.0), held(scene.sizes.1));
@@ -502,8 +436,8 @@ proptest! {
         let place = DVec3::from_array(place.map(|c| f64::from(c) / 16.0));
         let whole = DVec3::new(1.0, -3.0, 2.0) * 2.0_f64.powi(exponent);
         let pair = |by: DVec3| (
-            shape(kind_a, d_a, turn_a, by, 1.0).expect("valid"),
-            shape(kind_b, d_b, turn_b, place + by, 1.0).expect("valid"),
+            solid::<DVec3>(kind_a, d_a, turn_a, by, 1.0).expect("valid"),
+            solid::<DVec3>(kind_b, d_b, turn_b, place + by, 1.0).expect("valid"),
         );
         let answer = |by: DVec3| { let (a, b) = pair(by); distance(&a, &b, DistanceOptions::default()) };
         let (here, there, elsewhere) = (answer(DVec3::ZERO), answer(whole), answer(by * 1e6));
@@ -561,7 +495,7 @@ proptest! {
         (kind, d, turn) in (0_usize..8, sizes(), rotation()),
         places in prop::collection::vec(vector(3.0), 2..6),
     ) {
-        let a = shape(kind, d, turn, DVec3::ZERO, 1.0).expect("valid");
+        let a = solid::<DVec3>(kind, d, turn, DVec3::ZERO, 1.0).expect("valid");
         let hull = Polytope::new((0..60).map(|i| {
             let t = f64::from(i);
             DVec3::new((1.3 * t).sin(), (2.7 * t).sin(), (4.1 * t).sin())
@@ -580,8 +514,8 @@ proptest! {
         (turn_a, turn_b) in (rotation(), rotation()),
         (place, axis) in (vector(3.0), vector(1.0)),
     ) {
-        let a = shape(kind_a, d_a, turn_a, DVec3::ZERO, 1.0).expect("valid");
-        let b = shape(kind_b, d_b, turn_b, place, 1.0).expect("valid");
+        let a = solid::<DVec3>(kind_a, d_a, turn_a, DVec3::ZERO, 1.0).expect("valid");
+        let b = solid::<DVec3>(kind_b, d_b, turn_b, place, 1.0).expect("valid");
         let one = distance(&a, &b, DistanceOptions::default());
         let size = d_a.length() + d_b.length() + place.length();
         for other in [
@@ -608,8 +542,8 @@ proptest! {
         (place, axis) in (prop_oneof![vector(3.0), Just(DVec3::X * 3.0)], vector(1.0)),
         ulps in -8_i32..8,
     ) {
-        let a = shape(kind_a, d_a, turn_a, DVec3::ZERO, 1.0).expect("valid");
-        let beside = |place| shape(kind_b, d_b, turn_b, place, 1.0).expect("valid");
+        let a = solid::<DVec3>(kind_a, d_a, turn_a, DVec3::ZERO, 1.0).expect("valid");
+        let beside = |place| solid::<DVec3>(kind_b, d_b, turn_b, place, 1.0).expect("valid");
         let apart = distance(&a, &beside(place), DistanceOptions::default());
         let touching = apart.normal.map(|n| place + n * (apart.distance + f64::from(ulps) * f64::EPSILON));
         for place in [place].into_iter().chain(touching) {
@@ -643,7 +577,7 @@ proptest! {
         (back, stretch) in (0_i32..12, -20_i32..20),
     ) {
         prop_assume!(from.length() > 0.1);
-        let target = shape(kind, d, turn, DVec3::ZERO, 1.0).expect("valid");
+        let target = solid::<DVec3>(kind, d, turn, DVec3::ZERO, 1.0).expect("valid");
         let from = from.normalize() * 8.0;
         let (stretch, back) = (2.0_f64.powi(stretch), 2.0_f64.powi(back));
         let direction = aim - from;

@@ -18,10 +18,6 @@ const VALID: &str = "valid numbers";
 /// How many pairs are asked in each precision and dimension.
 const PAIRS: usize = 300;
 
-fn vector<V: Vector>(random: &mut Random, range: f64) -> V {
-    V::from_fn(|_| s::<V>(random.number(-range, range)))
-}
-
 fn shape<V: Vector>(random: &mut Random, kind: usize) -> Shape<V> {
     let mut size = || s::<V>(random.number(0.2, 1.0));
     match kind % 5 {
@@ -29,7 +25,7 @@ fn shape<V: Vector>(random: &mut Random, kind: usize) -> Shape<V> {
         1 => Box::new(Capsule::<V>::new(size(), size()).expect(VALID)),
         2 => Box::new(Cuboid::new(V::from_fn(|_| size())).expect(VALID)),
         3 => Box::new(Rounded::new(Cuboid::new(V::from_fn(|_| size())).expect(VALID), size()).expect(VALID)),
-        _ => Box::new(Polytope::new((0..12).map(|_| vector::<V>(random, 1.0)).collect::<Vec<_>>()).expect(VALID)),
+        _ => Box::new(Polytope::new((0..12).map(|_| random.vector::<V>(1.0)).collect::<Vec<_>>()).expect(VALID)),
     }
 }
 
@@ -37,7 +33,7 @@ fn shape<V: Vector>(random: &mut Random, kind: usize) -> Shape<V> {
 fn pair<V: Vector>(random: &mut Random, kind: usize, gap: f64) -> [Posed<Shape<V>>; 2] {
     let [a, b] = [shape(random, kind), shape(random, kind / 5)];
     let a = Posed::translated(a, V::ZERO).expect(VALID);
-    let place = vector::<V>(random, 1.0);
+    let place = random.vector::<V>(1.0);
     let now = signed_distance(&a, &Posed::translated(&b, place).expect(VALID), SignedDistanceOptions::default());
     let place = place + now.normal * (now.signed_distance - s::<V>(gap));
     [a, Posed::translated(b, place).expect(VALID)]
@@ -85,8 +81,8 @@ fn rays<V: Vector>() {
     let mut random = Random(3);
     for kind in 0..PAIRS {
         let target = Posed::translated(shape(&mut random, kind), V::ZERO).expect(VALID);
-        let source = vector::<V>(&mut random, 1.0).unit().expect("not zero") * s::<V>(4.0);
-        let aim = vector::<V>(&mut random, if kind % 2 == 0 { 0.05 } else { 1.5 });
+        let source = random.vector::<V>(1.0).unit().expect("not zero") * s::<V>(4.0);
+        let aim = random.vector::<V>(if kind % 2 == 0 { 0.05 } else { 1.5 });
         let ray = Ray { source, direction: aim - source };
         let full = ray_cast(&target, ray, RayCastOptions::default()).expect("finite");
         let lean = ray_cast(&target, ray, RayCastOptions::lean()).expect("finite");
@@ -104,7 +100,7 @@ fn linear_casts<V: Vector>() {
         let gap = [random.number(0.1, 2.0), random.number(-0.2, -0.1), random.number(-30.0, 30.0) * ulps::<V>(1.0)];
         let [a, b] = pair::<V>(&mut random, kind, gap[kind % 3]);
         let between = b.core().origin - a.core().origin;
-        let motion = Motion { velocity_a: between + vector::<V>(&mut random, 0.5), velocity_b: V::ZERO };
+        let motion = Motion { velocity_a: between + random.vector::<V>(0.5), velocity_b: V::ZERO };
         let cast = |options| linear_cast(&a, &b, motion, options).expect("finite");
         let (full, lean) = (cast(LinearCastOptions::default()), cast(LinearCastOptions::lean()));
         agree([lean.lower, lean.upper], [full.lower, full.upper], (kind, lean, full));
@@ -172,8 +168,8 @@ fn motion_casts_find_the_same_contacts() {
     for kind in 0..100 {
         let gap = random.number(0.1, 1.0);
         let [a, b] = pair::<DVec3>(&mut random, kind, gap);
-        let velocity = b.core().origin - a.core().origin + vector::<DVec3>(&mut random, 0.3);
-        let angular_velocity = if kind % 4 == 0 { DVec3::ZERO } else { vector(&mut random, 2.0) };
+        let velocity = b.core().origin - a.core().origin + random.vector::<DVec3>(0.3);
+        let angular_velocity = if kind % 4 == 0 { DVec3::ZERO } else { random.vector(2.0) };
         let motion = RigidMotion { velocity, angular_velocity, center: a.core().origin };
         let cast = |options: MotionCastOptions<DVec3>| {
             motion_cast(&a, motion, &b, RigidMotion::default(), options.with_max_time(1.5)).expect("finite")

@@ -2,6 +2,7 @@
 //! the question is put another way.
 
 use crate::common::behind_pointers::{distance, linear_cast, motion_cast};
+use crate::common::strategies::{rotation, vector};
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Polytope, Posed, Rounded, SupportMap,
@@ -64,20 +65,10 @@ impl Body {
     }
 }
 
-fn vector(reach: f64) -> impl Strategy<Value = DVec3> {
-    (-reach..reach, -reach..reach, -reach..reach).prop_map(|(x, y, z)| DVec3::new(x, y, z))
-}
-
 /// Sizes of moderate or of wild aspect.
 fn sizes() -> impl Strategy<Value = DVec3> {
     let size = || prop_oneof![4 => 0.2..1.0, 1 => Just(1e-2), 1 => Just(1e-4)];
     (size(), size(), size()).prop_map(|(x, y, z)| DVec3::new(x, y, z))
-}
-
-fn rotation() -> impl Strategy<Value = DQuat> {
-    (vector(1.0), -3.0..3.0)
-        .prop_filter("an axis", |(axis, _)| axis.length() > 0.1)
-        .prop_map(|(axis, angle)| DQuat::from_axis_angle(axis.normalize(), angle))
 }
 
 /// A body at a place along x, that moves to somewhere near zero within one unit of time and turns about a point near

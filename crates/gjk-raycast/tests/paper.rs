@@ -4,6 +4,7 @@
 use std::cell::Cell;
 
 use crate::common::directions;
+use crate::common::strategies::{rotation, vector};
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, SupportMap, closest_point,
@@ -34,15 +35,6 @@ fn shape(kind: usize, turn: DQuat) -> Posed<Box<dyn SupportMap<Vector = DVec3>>>
     Posed::new(shape, turn, DVec3::ZERO).expect("a rotation")
 }
 
-fn vector(reach: f64) -> impl Strategy<Value = DVec3> {
-    [-reach..reach, -reach..reach, -reach..reach].prop_map(DVec3::from_array)
-}
-
-fn turn() -> impl Strategy<Value = DQuat> {
-    (vector(1.0), -3.0..3.0)
-        .prop_map(|(axis, angle)| DQuat::from_axis_angle(axis.try_normalize().unwrap_or(DVec3::X), angle))
-}
-
 /// What rounding leaves of an inequality between numbers of about one.
 const ROUNDING: f64 = 1e-13;
 
@@ -51,7 +43,7 @@ proptest! {
 
     /// Lemma 1: (x₂ − x₁)·(c₂ − c₁) ≥ ‖c₂ − c₁‖² for the points c closest to any two points x.
     #[test]
-    fn lemma_1(kind in 0_usize..7, turn in turn(), x1 in vector(4.0), x2 in vector(4.0)) {
+    fn lemma_1(kind in 0_usize..7, turn in rotation(), x1 in vector(4.0), x2 in vector(4.0)) {
         let shape = shape(kind, turn);
         let (c1, c2) = (nearest(&shape, x1), nearest(&shape, x2));
         prop_assert!((x2 - x1).dot(c2 - c1) >= (c2 - c1).length_squared() - ROUNDING, "{} {}", c1, c2);
@@ -61,7 +53,7 @@ proptest! {
     /// even Lipschitz: ‖c₂ − c₁‖ ≤ |λ₂ − λ₁|·‖r‖.
     #[test]
     fn theorem_2(
-        kind in 0_usize..7, turn in turn(), s in vector(4.0), r in vector(2.0), l1 in 0.0..3.0, step in -12.0..0.0,
+        kind in 0_usize..7, turn in rotation(), s in vector(4.0), r in vector(2.0), l1 in 0.0..3.0, step in -12.0..0.0,
     ) {
         let shape = shape(kind, turn);
         let l2 = l1 + 10.0_f64.powf(step);
@@ -71,7 +63,7 @@ proptest! {
 
     /// Theorem 3: (x − c(x))·r never decreases along the ray.
     #[test]
-    fn theorem_3(kind in 0_usize..7, turn in turn(), s in vector(4.0), r in vector(2.0)) {
+    fn theorem_3(kind in 0_usize..7, turn in rotation(), s in vector(4.0), r in vector(2.0)) {
         let shape = shape(kind, turn);
         let slopes = (0..60).map(|i| s + r * (0.05 * f64::from(i))).map(|x| (x - nearest(&shape, x)).dot(r));
         let slopes: Vec<f64> = slopes.collect();
@@ -80,7 +72,7 @@ proptest! {
 
     /// λ only grows, and stays a lower bound, in Algorithm 1 and in Algorithm 3.
     #[test]
-    fn lambda_is_monotone_and_below_the_hit(kind in 0_usize..7, turn in turn(), from in vector(1.0), aim in vector(0.6)) {
+    fn lambda_is_monotone_and_below_the_hit(kind in 0_usize..7, turn in rotation(), from in vector(1.0), aim in vector(0.6)) {
         prop_assume!(from.length() > 0.1);
         let shape = shape(kind, turn);
         let source = from.normalize() * 4.0;
@@ -100,7 +92,7 @@ proptest! {
 
     /// The bounds of Algorithm 2: ‖v‖ above, v·w/‖v‖ below, and ‖v − v*‖² ≤ ‖v‖² − v·w.
     #[test]
-    fn v_and_w_bound_the_distance(kind in 0_usize..7, turn in turn(), x in vector(4.0)) {
+    fn v_and_w_bound_the_distance(kind in 0_usize..7, turn in rotation(), x in vector(4.0)) {
         let shape = shape(kind, turn);
         let nearest = x - nearest(&shape, x);
         prop_assume!(nearest.length() > 1e-3);

@@ -2,11 +2,11 @@
 //! and runs in both precisions where the coordinates allow it.
 
 use crate::common::behind_pointers::{distance, intersects, signed_distance};
-use crate::common::{Quaternion, apart, at, cuboid, directions, meets, s, turned, ulps, v};
+use crate::common::{apart, at, cuboid, directions, meets, quaternion, s, turned, ulps, v};
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Quat, Vec2, Vec3, Vec3A};
 use convex_support::{
     Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Point, Polytope, Posed, Rounded, Scalar,
-    Segment, SupportMap, Triangle, Vector, support_value,
+    Segment, SupportMap, Triangle, Vector, Vector3, support_value,
 };
 use gjk_raycast::{DistanceOptions, IntersectOptions, SignedDistanceOptions, Status};
 
@@ -29,7 +29,7 @@ fn hull<V: Vector>(seed: u32, count: u32, size: f64, center: [f64; 3]) -> Polyto
 /// of the report is the test: if any sampled direction separates, the distance is at least that.
 #[test]
 fn d1_no_zero_where_a_plane_separates() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let mut separated = 0;
         for seed in 0..200 {
             let a = hull::<V>(seed, 5 + seed % 20, 0.5, [0.0; 3]);
@@ -51,7 +51,7 @@ fn d1_no_zero_where_a_plane_separates() {
 /// changed the answer. Exact translations change nothing here.
 #[test]
 fn d2_d6_a_common_translation_changes_nothing() {
-    fn run<V: Quaternion>(reaches: &[f64]) {
+    fn run<V: Vector3>(reaches: &[f64]) {
         let pair = |x: f64| {
             apart(
                 &at(cuboid::<V>([1.0, 0.5, 0.25]), [x, -x, x]),
@@ -71,7 +71,7 @@ fn d2_d6_a_common_translation_changes_nothing() {
 /// a plane or three on a line: contact was dropped, or 0/0.
 #[test]
 fn d3_d5_d26_contact_on_a_face_an_edge_or_a_corner_is_contact() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let cube = cuboid::<V>([1.0; 3]);
         for x in [0.0, 1.0, 2.0] {
             for y in [0.0, 1.0, 2.0] {
@@ -91,10 +91,10 @@ fn d3_d5_d26_contact_on_a_face_an_edge_or_a_corner_is_contact() {
 /// apart.
 #[test]
 fn d5_deep_overlap_is_overlap() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for (i, d) in directions(3000).enumerate() {
             let t = i as f64;
-            let turn = V::quaternion([(1.1 * t).sin(), (1.7 * t).sin(), (2.3 * t).sin(), 1.5]);
+            let turn = quaternion::<V>([(1.1 * t).sin(), (1.7 * t).sin(), (2.3 * t).sin(), 1.5]);
             let cube = turned(cuboid::<V>([0.5; 3]), turn, d.map(|c| 0.9 * c * (0.7 * t).sin().abs()));
             // Both contain the ball of radius ½ about their centres, less than 1 apart.
             let answer = apart(&cube, &cuboid::<V>([0.5; 3]));
@@ -108,7 +108,7 @@ fn d5_deep_overlap_is_overlap() {
 /// `openGJK` #52. In single precision, boxes that overlap near (91000, 54000) were 0.00329 apart.
 #[test]
 fn d6_boxes_that_overlap_far_away_overlap() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for x in [0.0, 0.25, 0.5, 0.9375, 1.0] {
             let a = at(cuboid::<V>([0.5; 3]), [91_000.0, 54_000.0, 10.0]);
             let b = at(cuboid::<V>([0.5; 3]), [91_000.0 + x, 54_000.0 - x, 10.0 + 0.5 * x]);
@@ -126,7 +126,7 @@ fn d6_boxes_that_overlap_far_away_overlap() {
 /// and a triangle below a square millimetre was dropped as having no area.
 #[test]
 fn d22_a_cylinder_at_the_edge_of_a_triangle() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for size in [1.0, 1e-3, 1e-4] {
             let corners = [[0.0, 0.0, -size], [0.0, 0.0, size], [-size, 0.0, 0.0]];
             let triangle = Triangle::new(corners.map(v::<V>)).expect("finite");
@@ -152,7 +152,7 @@ fn d22_a_cylinder_at_the_edge_of_a_triangle() {
 /// `openGJK` #56 and #41. NaN for flat objects and rounded cubes.
 #[test]
 fn d7_flat_and_rounded_shapes_have_finite_answers() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let plate = cuboid::<V>([1.0, 0.0, 1.0]);
         let needle = cuboid::<V>([0.0, 0.0, 1.0]);
         let rounded = Rounded::new(cuboid::<V>([0.5; 3]), s::<V>(0.25)).expect("positive");
@@ -176,7 +176,7 @@ fn d7_flat_and_rounded_shapes_have_finite_answers() {
 /// coal #48, #49, #53. Two nearly touching triangles, one of 25 m and one of millimetres: no convergence.
 #[test]
 fn d10_a_tiny_triangle_near_a_large_one() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let large = Triangle::new([v::<V>([-25.0, 0.0, -20.0]), v([25.0, 0.0, -15.0]), v([0.0, 0.0, 25.0])]);
         let large = large.expect("finite");
         for gap in [1e-3, 1e-4, 0.0] {
@@ -193,11 +193,11 @@ fn d10_a_tiny_triangle_near_a_large_one() {
 /// coal #37, #380. A cylinder very close to a box never converged, or hit an assertion.
 #[test]
 fn d11_d12_a_cylinder_close_to_a_box_converges() {
-    fn run<V: Quaternion>(gaps: &[f64]) {
+    fn run<V: Vector3>(gaps: &[f64]) {
         for &gap in gaps {
             let cylinder = Cylinder::<V>::new(s::<V>(0.5), s::<V>(0.25)).expect("positive");
             for (rotation, reach) in [([0.0, 0.0, 0.0, 1.0], 0.5), ([0.0, 0.0, 0.5_f64.sqrt(), 0.5_f64.sqrt()], 0.25)] {
-                let posed = turned(cylinder, V::quaternion(rotation), [0.1, 1.0 + reach + gap, 0.2]);
+                let posed = turned(cylinder, quaternion::<V>(rotation), [0.1, 1.0 + reach + gap, 0.2]);
                 let answer = apart(&posed, &cuboid::<V>([1.0; 3]));
                 assert!((answer.distance.as_f64() - gap).abs() < ulps::<V>(64.0), "{gap}: {answer:?}");
             }
@@ -210,7 +210,7 @@ fn d11_d12_a_cylinder_close_to_a_box_converges() {
 /// axis does not matter.
 #[test]
 fn d13_d15_parallel_boxes_from_every_start() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let unit = cuboid::<V>([0.5; 3]);
         for axis in 0..3 {
             let mut offset = [0.0; 3];
@@ -231,7 +231,7 @@ fn d13_d15_parallel_boxes_from_every_start() {
 /// jitterphysics2 #302. A unit box and a one-point cloud on its face: distance said apart, overlap said together.
 #[test]
 fn d19_distance_and_overlap_never_contradict() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let cube = cuboid::<V>([0.5; 3]);
         for i in -40..=40 {
             let x = 0.5 * (1.0 + ulps::<V>(0.5 * f64::from(i)));
@@ -248,13 +248,13 @@ fn d19_distance_and_overlap_never_contradict() {
 /// orientation, and centimetres of depth came out.
 #[test]
 fn d9_d21_d22_nearly_parallel_boxes_keep_their_axis() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let b = cuboid::<V>([0.363, 0.277, 0.363]);
         for i in -20..=20 {
             let half = 0.5e-4 * f64::from(i);
             let a = turned(
                 cuboid::<V>([0.363, 0.363, 0.277]),
-                V::quaternion([half, 0.0, 0.3 * half, 1.0]),
+                quaternion::<V>([half, 0.0, 0.3 * half, 1.0]),
                 [0.02, 0.6411, 0.01],
             );
             let answer = apart(&a, &b);
@@ -278,7 +278,7 @@ fn d27_nothing_loops() {
             self.0
         }
     }
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for bad in [f64::NAN, f64::INFINITY] {
             let answer = apart(&Broken(v::<V>([bad, 0.0, 0.0])), &cuboid::<V>([1.0; 3]));
             assert_ne!(answer.status, Status::Converged, "{answer:?}");
@@ -292,7 +292,7 @@ fn d27_nothing_loops() {
 /// on. It is that of double precision, to rounding, and found in a few steps.
 #[test]
 fn d18_a_box_and_nine_points_in_single_precision() {
-    fn run<V: Quaternion>(seed: u32) -> (f64, usize) {
+    fn run<V: Vector3>(seed: u32) -> (f64, usize) {
         let place = directions(40).nth(seed as usize).expect("40").map(|c| 4.0 * c);
         // The same points in both precisions.
         let points = hull::<Vec3A>(seed, 9, 1.0, [0.0; 3]);
@@ -313,12 +313,12 @@ fn d18_a_box_and_nine_points_in_single_precision() {
 /// distance3d #72. A long bar and a cube turned by 45 degrees at its end, both far from the origin.
 #[test]
 fn d28_a_cube_at_the_end_of_a_bar() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let bar = at(cuboid::<V>([15.0, 0.5, 0.5]), [-104.5, -120.0, -120.0]);
         let eighth = std::f64::consts::FRAC_PI_8;
         let cube = turned(
             cuboid::<V>([0.5; 3]),
-            V::quaternion([0.0, 0.0, eighth.sin(), eighth.cos()]),
+            quaternion::<V>([0.0, 0.0, eighth.sin(), eighth.cos()]),
             [-88.0, -120.0, -120.0],
         );
         let answer = apart(&cube, &bar);
@@ -331,7 +331,7 @@ fn d28_a_cube_at_the_end_of_a_bar() {
 /// computed from the same weights, and agree to rounding of the size.
 #[test]
 fn d28_the_closest_points_of_two_meshes_are_as_far_apart_as_the_distance() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let ring = |i: i32| {
             let (sin, cos) = (f64::from(i / 2) * std::f64::consts::TAU / 32.0).sin_cos();
             v::<V>([0.5 * cos, if i % 2 == 0 { -1.0 } else { 1.0 }, 0.5 * sin])
@@ -339,7 +339,7 @@ fn d28_the_closest_points_of_two_meshes_are_as_far_apart_as_the_distance() {
         let mesh = Polytope::new((0..64).map(ring)).expect("finite points");
         for (i, d) in directions(100).enumerate() {
             let t = i as f64;
-            let turn = V::quaternion([(1.1 * t).sin(), (1.7 * t).sin(), (2.3 * t).sin(), 1.5]);
+            let turn = quaternion::<V>([(1.1 * t).sin(), (1.7 * t).sin(), (2.3 * t).sin(), 1.5]);
             let answer = apart(&turned(&mesh, turn, d.map(|c| 3.0 * c)), &mesh);
             let between = (answer.point_a - answer.point_b).norm().as_f64();
             assert!((between - answer.distance.as_f64()).abs() < ulps::<V>(16.0), "{i}: {answer:?}");
@@ -656,7 +656,7 @@ fn a_corner_without_a_share_turns_the_plane() -> Result<(), InvalidShape> {
 /// wide as those of the distance. It asks the same look near contact now as that.
 #[test]
 fn boxes_that_touch_exactly_are_decided_by_all() -> Result<(), InvalidShape> {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for i in 0..600_u32 {
             let number = |k: u32, span: u32| f64::from((i * 7919 + k * 104_729 + i * k * 31) % span);
             let half = |k: u32| [0, 1, 2].map(|j| 1.0 + number(k + j, 9));

@@ -2,10 +2,10 @@
 //! in both precisions where the coordinates allow it.
 
 use crate::common::behind_pointers::linear_cast;
-use crate::common::{Quaternion, at, cuboid, directions, off, s, sweep, time, turned, ulps, v};
+use crate::common::{at, cuboid, directions, off, quaternion, s, sweep, time, turned, ulps, v};
 use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Point, Posed, Scalar, Segment, SupportMap, Triangle, Vector,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Point, Posed, Scalar, Segment, SupportMap, Triangle, Vector, Vector3,
 };
 use gjk_raycast::{CastMethod, LinearCast, LinearCastOptions, Motion, Outcome, Status};
 
@@ -18,7 +18,7 @@ fn both(single: impl FnOnce(), double: impl FnOnce()) {
 /// the box, to half a metre, since the closest point of a long simplex lost its digits.
 #[test]
 fn s1_time_of_impact_does_not_depend_on_the_size_of_the_floor() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for size in [5.0, 50.0, 500.0, 5000.0] {
             let ball = at(Ball::<V>::new(s::<V>(0.5166)).expect("positive"), [0.3, 10.0, -0.2]);
             let floor = cuboid::<V>([size, 1.0, size]);
@@ -32,7 +32,7 @@ fn s1_time_of_impact_does_not_depend_on_the_size_of_the_floor() {
 /// `bevy_rapier` #119, godot #85314. The same over a grid of starting points: the heights differed by up to 6 cm.
 #[test]
 fn s2_s23_every_start_over_the_floor_lands_at_one_height() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let floor = cuboid::<V>([500.0, 1.0, 500.0]);
         for i in 0..400 {
             let (x, z) = (f64::from(i % 20) * 0.01, f64::from(i / 20) * 0.01);
@@ -70,7 +70,7 @@ fn s3_a_ball_does_not_tunnel_through_a_thin_bar() {
 /// parry #193. Along a wall, almost tangentially: normals were wrong and not of unit length.
 #[test]
 fn s6_grazing_normals_are_unit_and_those_of_the_face() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let wall = cuboid::<V>([5.0, 2.5, 0.05]);
         let ball = at(Ball::<V>::new(s::<V>(0.25)).expect("positive"), [-4.0, 0.0, 0.305]);
         for slope in [1e-2, 5e-3, 2e-3] {
@@ -84,9 +84,9 @@ fn s6_grazing_normals_are_unit_and_those_of_the_face() {
 /// rapier #933. Is the normal local or of the world, and whose? It is the world's, out of `b` towards `a`.
 #[test]
 fn s7_the_normal_is_the_worlds_and_points_to_a() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let (sin, cos) = 0.4_f64.sin_cos();
-        let b = turned(cuboid::<V>([1.0, 1.0, 1.0]), V::quaternion([0.0, 0.0, sin, cos]), [0.0; 3]);
+        let b = turned(cuboid::<V>([1.0, 1.0, 1.0]), quaternion::<V>([0.0, 0.0, sin, cos]), [0.0; 3]);
         let n = [0.8_f64.cos(), 0.8_f64.sin(), 0.0];
         let a = at(Ball::<V>::new(s::<V>(0.5)).expect("positive"), n.map(|c| 5.0 * c));
         let hit = sweep(&a, &b, n.map(|c| -c)).outcome.hit().expect("head-on");
@@ -116,7 +116,7 @@ fn s9_the_short_end_of_a_thin_plank_is_there() {
 /// simplex. Receding and tangential starts miss, closing ones advance, however near.
 #[test]
 fn s10_s13_near_starts_are_not_contact() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for gap in [1e-2, 1e-3, 1e-4] {
             let a = at(cuboid::<V>([1.0, 1.0, 1.0]), [0.0, 2.0 + gap, 0.0]);
             let b = cuboid::<V>([1.0, 1.0, 1.0]);
@@ -159,7 +159,7 @@ fn s12_overlap_at_the_start_is_a_hit_at_zero() {
 /// support point stayed in the simplex, and 7.25 m of penetration came out.
 #[test]
 fn s14_nearly_touching_capsule_and_cylinder_stay_near_contact() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let capsule = Capsule::<V>::new(s::<V>(2.031_143_43), s::<V>(7.197_321_89)).expect("positive");
         let cylinder = Cylinder::<V>::new(s::<V>(0.3), s::<V>(0.4975)).expect("positive");
         let cylinder = at(cylinder, [-0.951_660_156, -2.091_552_73, -7.635_742_18]);
@@ -177,7 +177,7 @@ fn s14_nearly_touching_capsule_and_cylinder_stay_near_contact() {
 /// Jolt #217, #1734. The normal of a search that ends in its first iteration was zero, or an axis from halfway.
 #[test]
 fn s16_s18_normals_are_unit_even_when_found_at_once() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let cylinder = at(Cylinder::<V>::new(s::<V>(1.2), s::<V>(0.75)).expect("positive"), [0.1, 5.0, 0.2]);
         let floor = cuboid::<V>([3.0, 0.5, 4.0]);
         let hit = sweep(&cylinder, &floor, [0.0, -1.0, 0.0]).outcome.hit().expect("it lands");
@@ -190,7 +190,7 @@ fn s16_s18_normals_are_unit_even_when_found_at_once() {
 /// `PhysX` #610. Two cubes, one above the other: 2.9975 instead of 3.
 #[test]
 fn s19_cubes_fall_exactly_as_far_as_they_can() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let (lower, upper) = (at(cuboid::<V>([1.0; 3]), [0.0, 10.0, 0.0]), at(cuboid::<V>([1.0; 3]), [0.0, 15.0, 0.0]));
         let hit = time(&upper, &lower, [0.0, -1.0, 0.0]).expect("it lands");
         assert!((hit - 3.0).abs() < ulps::<V>(8.0), "{hit}");
@@ -202,14 +202,14 @@ fn s19_cubes_fall_exactly_as_far_as_they_can() {
 /// shapes and used ones, the same bits.
 #[test]
 fn s22_the_same_question_has_the_same_answer() {
-    fn scene<V: Quaternion>() -> LinearCast<V> {
-        let rotation = V::quaternion([-0.057_141, 0.572_179, 0.040_011, 0.817_157]);
+    fn scene<V: Vector3>() -> LinearCast<V> {
+        let rotation = quaternion::<V>([-0.057_141, 0.572_179, 0.040_011, 0.817_157]);
         let slab: Posed<Cuboid<V>> = turned(cuboid([19.92, 0.92, 49.92]), rotation, [0.0, 0.0, 120.0]);
         let ball = Ball::new(s::<V>(0.45)).expect("positive");
         let ball = at(ball, [-27.449_842, -2.994_38, 109.886_52]);
         sweep(&ball, &slab, [-0.079_466, -0.610_439, -0.333_244])
     }
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let first = scene::<V>();
         assert_eq!(first.status, Status::Converged);
         for d in directions(20) {
@@ -223,7 +223,7 @@ fn s22_the_same_question_has_the_same_answer() {
 /// parry #317. Hits far from the origin were lost. What both shapes share of their position does not matter.
 #[test]
 fn s25_far_from_the_origin_is_like_near_it() {
-    fn run<V: Quaternion>(reach: f64) {
+    fn run<V: Vector3>(reach: f64) {
         let far = [reach, -reach, reach];
         let a = at(cuboid::<V>([1.0, 2.0, 0.5]), [far[0] + 8.0, far[1], far[2]]);
         let b = at(cuboid::<V>([1.0; 3]), far);
@@ -238,7 +238,7 @@ fn s25_far_from_the_origin_is_like_near_it() {
 /// point in both.
 #[test]
 fn s15_a_start_in_contact_is_a_hit_in_every_direction() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let floor = cuboid::<V>([4.0, 1.0, 4.0]);
         for depth in [0.0, ulps::<V>(1.0), 1e-3, 0.5] {
             let ball = at(Ball::<V>::new(s::<V>(0.5)).expect("positive"), [0.25, 1.5 - depth, -0.5]);
@@ -266,7 +266,7 @@ fn s15_a_start_in_contact_is_a_hit_in_every_direction() {
 /// contact, however short the motion may be, even of no length.
 #[test]
 fn s17_no_end_is_too_early_for_a_start_in_contact() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let (a, b) = (at(cuboid::<V>([1.0; 3]), [0.5, 1.5, 0.0]), cuboid::<V>([1.0; 3]));
         for end in [0.0, f64::MIN_POSITIVE, 1e-30, 1e-3, 1.0, f64::INFINITY] {
             for velocity in [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [1e-20, 0.0, 0.0], [0.0; 3]] {
@@ -284,7 +284,7 @@ fn s17_no_end_is_too_early_for_a_start_in_contact() {
 /// contact is on both shapes, for casts and for distances.
 #[test]
 fn s20_the_point_of_contact_is_on_the_shapes() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let place = [40.0, -30.0, 20.0];
         let b = at(cuboid::<V>([1.0, 2.0, 3.0]), place);
         for d in directions(60) {
@@ -339,7 +339,7 @@ fn s12_large_angles_are_angles() {
 /// Equal velocities, whatever they are, are no error: only the start counts.
 #[test]
 fn equal_velocities_hit_only_what_overlaps() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let velocity = v::<V>([1.0, 2.0, 3.0]);
         let motion = Motion { velocity_a: velocity, velocity_b: velocity };
         let b = cuboid::<V>([1.0; 3]);

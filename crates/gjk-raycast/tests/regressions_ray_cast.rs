@@ -1,11 +1,11 @@
 //! Ray casts that went wrong elsewhere. Each test is named after its report, tells what goes wrong there, and runs in
 //! both precisions.
 
-use crate::common::{Quaternion, at, cast, cuboid, directions, lambda, off, s, turned, ulps, v};
+use crate::common::{at, cast, cuboid, directions, lambda, off, quaternion, s, turned, ulps, v};
 use convex_support::glam::{DQuat, DVec3, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Hull, MinkowskiSum, Point, Polytope, Posed, Rounded, Scalar,
-    Segment, SupportMap, closest_point,
+    Segment, SupportMap, Vector3, closest_point,
 };
 use gjk_raycast::{
     CastMethod, DistanceOptions, HalfSpace, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, Scene, Status,
@@ -22,7 +22,7 @@ fn both(single: impl FnOnce(), double: impl FnOnce()) {
 /// squared distance while the simplex still spans the whole wall, and the hit sinks in by 0.8 % at one side.
 #[test]
 fn r1_wall_hit_is_flat_across_its_width() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let wall = at(cuboid::<V>([500.0, 100.0, 0.5]), [0.0, 0.0, 49.5]);
         for i in -49..=49 {
             let x = f64::from(i) * 10.0;
@@ -37,7 +37,7 @@ fn r1_wall_hit_is_flat_across_its_width() {
 /// 9 mm before the wall, since 8.32e-5 m² was below 1e-4.
 #[test]
 fn r2_lidar_ranges_are_right_near_the_perpendicular() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let wall = at(cuboid::<V>([1.0, 20.0, 20.0]), [11.0, 0.0, 0.0]);
         for i in -200..=200 {
             let angle = f64::from(i) * 1e-3;
@@ -52,7 +52,7 @@ fn r2_lidar_ranges_are_right_near_the_perpendicular() {
 /// have nothing but flat simplices.
 #[test]
 fn r4_flat_hulls_are_hit_where_they_are() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let grid = (0..25).map(|i| v::<V>([f64::from(i % 5) - 2.0, f64::from(i / 5) - 2.0, 0.0]));
         let plate = Polytope::new(grid).expect("finite points");
         for d in directions(60).filter(|d| d[2].abs() > 0.1) {
@@ -67,9 +67,9 @@ fn r4_flat_hulls_are_hit_where_they_are() {
 /// Bullet #344. The normal of a turned child was left in the child's frame.
 #[test]
 fn r5_normal_turns_with_the_shape() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let (sin, cos) = 0.25_f64.sin_cos();
-        let tilted = turned(cuboid::<V>([1.0, 1.0, 1.0]), V::quaternion([0.0, 0.0, sin, cos]), [5.0, 0.0, 0.0]);
+        let tilted = turned(cuboid::<V>([1.0, 1.0, 1.0]), quaternion::<V>([0.0, 0.0, sin, cos]), [5.0, 0.0, 0.0]);
         let hit = cast(&tilted, [0.0; 3], [1.0, 0.0, 0.0]).outcome.hit().expect("it is in the way");
         assert!(off(hit.normal, [-0.5_f64.cos(), -0.5_f64.sin(), 0.0]) < ulps::<V>(8.0), "{hit:?}");
     }
@@ -80,8 +80,8 @@ fn r5_normal_turns_with_the_shape() {
 /// the hit distance along the ray.
 #[test]
 fn r6_hit_point_is_at_the_hit_parameter() {
-    fn run<V: Quaternion>() {
-        let rotation = V::quaternion([-0.664_463_043, 0.664_463_043, 0.241_844_788, 0.241_844_788]);
+    fn run<V: Vector3>() {
+        let rotation = quaternion::<V>([-0.664_463_043, 0.664_463_043, 0.241_844_788, 0.241_844_788]);
         let cone = Cone::<V>::new(s::<V>(250.0), s::<V>(495.0)).expect("positive");
         let cone = turned(cone, rotation, [11_800.0, 166.703_125, 1_934.414_43]);
         let (source, direction) = ([11_835.0, 4.709_930_42, 1_705.919_43], [0.0, 0.0, 1.0]);
@@ -104,7 +104,7 @@ fn r6_hit_point_is_at_the_hit_parameter() {
 /// edge-on, and the hit was lost.
 #[test]
 fn r7_axis_rays_hit_the_cube() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let corners = (0..8).map(|i| v::<V>([0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 })));
         let cube = Polytope::new(corners).expect("finite points");
         for axis in 0..3 {
@@ -128,7 +128,7 @@ fn r9_r10_a_ray_from_within_is_a_hit_at_zero_without_a_normal() {
             assert_eq!((hit.lambda.as_f64(), hit.normal, answer.status), (0.0, None, Status::Converged));
         }
     }
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let (r, h) = (s::<V>(1.0), s::<V>(2.0));
         within(&cuboid::<V>([1.0, 1.0, 2.0]));
         within(&Ball::<V>::new(r).expect("positive"));
@@ -145,7 +145,7 @@ fn r9_r10_a_ray_from_within_is_a_hit_at_zero_without_a_normal() {
 /// less do not reach.
 #[test]
 fn r11_the_end_of_the_ray_belongs_to_it() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let target = at(cuboid::<V>([1.0, 1.0, 1.0]), [5.0, 0.25, 0.5]);
         let ray = Ray { source: V::ZERO, direction: v([1.0, 0.0, 0.0]) };
         for (ulp, reaches) in [(-2.0, false), (0.0, true), (2.0, true)] {
@@ -162,7 +162,7 @@ fn r11_the_end_of_the_ray_belongs_to_it() {
 /// points (Algorithm 3), and the same box as a hull give one answer.
 #[test]
 fn r12_all_algorithms_agree() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let h = v::<V>([1.0, 0.5, 0.25]);
         let solid = cuboid::<V>([1.0, 0.5, 0.25]);
         let corners = (0..8).map(|i| h * v::<V>([0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 })));
@@ -189,7 +189,7 @@ fn r12_all_algorithms_agree() {
 /// DART #3355. Sampling the ray at sixteen points steps over a thin hull.
 #[test]
 fn r13_a_thin_slab_is_not_stepped_over() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let slab = cuboid::<V>([1.0, 1e-3, 1.0]);
         for d in directions(100) {
             let hit = lambda(&slab, d.map(|c| -7.3 * c), d.map(|c| 100.0 * c)).expect("through the centre");
@@ -205,7 +205,7 @@ fn r13_a_thin_slab_is_not_stepped_over() {
 /// Jolt #1574. A ray almost along the separating plane: `v·r` is tiny and negative, and λ overflowed.
 #[test]
 fn r14_no_answer_is_infinite_or_nan() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let target = cuboid::<V>([1.0, 1.0, 1.0]);
         for tilt in [0.0, 1e-45, 1e-38, 1e-30, 1e-20, 1e-12, 1e-7, 1e-3] {
             for height in [1.0, 1.0 + 1e-6, 1.5] {
@@ -225,7 +225,7 @@ fn r14_no_answer_is_infinite_or_nan() {
 /// the size of the box, from tolerances in metres.
 #[test]
 fn r15_r16_small_shapes_are_hit_as_well_as_large_ones() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let h = [0.9, 0.6, 0.3];
         let mut hits = 0;
         for exponent in [-20, -10, 0, 10, 20] {
@@ -260,7 +260,7 @@ fn r15_r16_small_shapes_are_hit_as_well_as_large_ones() {
 /// The combination of all: a rounded, summed, far away thing is hit where its closed form says.
 #[test]
 fn far_source_loses_only_its_own_digits() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let bar = Segment::new([v::<V>([-1.0, 0.0, 0.0]), v([1.0, 0.0, 0.0])]).expect("finite");
         let capsule = MinkowskiSum::new(bar, Ball::new(s::<V>(0.5)).expect("positive"));
         for distance in [1e1, 1e3, 1e6] {
@@ -296,7 +296,7 @@ fn a_grazing_hit_is_bracketed_by_its_lesser_slope() {
 /// its size, and the bounds did not hold the truth. Here half an ulp of the place is the shape.
 #[test]
 fn r30_a_posed_polytope_is_where_its_vertices_are() {
-    fn run<V: Quaternion>(far: f64) {
+    fn run<V: Vector3>(far: f64) {
         let corners = (0..8).map(|i| v::<V>([0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 0.0625 } else { 0.0 })));
         let cube = at(Polytope::new(corners).expect("eight points"), [far, 0.0, 0.0]);
         let ray = Ray { source: v::<V>([far - 1.0, 0.03125, 0.03125]), direction: v::<V>([1.0, 0.0, 0.0]) };
@@ -317,7 +317,7 @@ fn r30_a_posed_polytope_is_where_its_vertices_are() {
 /// cosine of the last one was closed at once, at the source.
 #[test]
 fn a_ray_in_the_plane_of_a_face_meets_its_edge() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let corners = [[0.0, 1.0, -1.0], [1.0, 0.0, -1.0], [-2.0, -2.0, -1.0], [2.0, 2.0, 0.0]];
         let target = Polytope::new(corners.map(v::<V>)).expect("finite");
         let hit = lambda(&target, [1.0, 1.0, -1.0], [-1.0, -1.0, 0.0]).expect("it is hit");
@@ -381,7 +381,7 @@ fn a_ray_past_an_edge_by_rounding_is_decided() {
 /// number, converged. There is no number for such a λ; but a ray with an end misses what is beyond it.
 #[test]
 fn a_lambda_that_overflows_is_not_a_hit() {
-    fn run<V: Quaternion>(short: f64) {
+    fn run<V: Vector3>(short: f64) {
         let shapes: [Box<dyn SupportMap<Vector = V>>; 3] = [
             Box::new(at(cuboid::<V>([1.0; 3]), [1e7, 0.0, 0.0])),
             Box::new(at(Ball::<V>::new(s::<V>(1.0)).expect("a radius"), [1e7, 0.0, 0.0])),
@@ -404,7 +404,7 @@ fn a_lambda_that_overflows_is_not_a_hit() {
 /// of the least numbers.
 #[test]
 fn rays_at_the_smallest_bodies_do_not_miss_what_they_hit() {
-    fn run<V: Quaternion>(exponents: core::ops::Range<i32>) {
+    fn run<V: Vector3>(exponents: core::ops::Range<i32>) {
         for exponent in exponents {
             let size = s::<V>(2.0_f64.powi(exponent));
             let corners = (0..3).flat_map(|i| [V::axis(i) * size, -V::axis(i) * size]);
@@ -467,7 +467,7 @@ fn an_upper_bound_of_algorithm_1_is_where_points_of_the_set_are_all_around() {
 /// alone is told now, by whatever was cast.
 #[test]
 fn a_hit_that_may_be_a_miss_has_not_converged() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let pebble = Ellipsoid::<V>::new(V::ZERO, v([2.0, 1.0, 0.5]), V::Rotation::default()).expect("positive");
         let graze = Ray { source: v::<V>([-5.0, 1.0, 0.0]), direction: v([1.0, 0.0, 0.0]) };
         let stalled = |is_certain: bool, status: Status| !is_certain && status == Status::Stalled;
@@ -504,7 +504,7 @@ fn a_hit_that_may_be_a_miss_has_not_converged() {
 /// to roundings of its own.
 #[test]
 fn rays_nearly_along_a_side_are_as_narrow_as_their_numbers() {
-    fn run<V: Quaternion>(tilt: f64) {
+    fn run<V: Vector3>(tilt: f64) {
         type Shape<V> = Box<dyn SupportMap<Vector = V>>;
         let (four, half, one) = (s::<V>(4.0), s::<V>(0.5), s::<V>(1.0));
         let upright: [Shape<V>; 3] = [
@@ -539,9 +539,10 @@ fn rays_nearly_along_a_side_are_as_narrow_as_their_numbers() {
 /// one look there is mostly enough.
 #[test]
 fn second_looks_are_few_and_count() {
-    fn run<V: Quaternion>() {
-        let turned =
-            |shape: Box<dyn SupportMap<Vector = V>>, place| turned(shape, V::quaternion([0.3, -0.5, 0.7, 0.4]), place);
+    fn run<V: Vector3>() {
+        let turned = |shape: Box<dyn SupportMap<Vector = V>>, place| {
+            turned(shape, quaternion::<V>([0.3, -0.5, 0.7, 0.4]), place)
+        };
         let cone = turned(Box::new(Cone::<V>::new(s::<V>(1.0), s::<V>(1.0)).expect("positive")), [0.0; 3]);
         let cube = turned(Box::new(cuboid::<V>([1.0, 0.5, 0.25])), [0.25, 0.5, -1.0]);
         let mut most = [0; 2];

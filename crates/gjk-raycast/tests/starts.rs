@@ -1,11 +1,11 @@
 //! How casts begin and end: touching, receding, sliding, inside, at rest, at the very end, and what is no cast at all.
 
 use crate::common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
-use crate::common::{Quaternion, at, cuboid, directions, s, ulps, v};
+use crate::common::{at, cuboid, directions, quaternion, s, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, ScalarOf, SupportMap, Vector,
-    support_value,
+    Vector3, support_value,
 };
 use gjk_raycast::{
     CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCast, RayCastError,
@@ -17,10 +17,10 @@ type Shape<V> = Box<dyn SupportMap<Vector = V>>;
 const VALID: &str = "positive sizes";
 
 /// Bodies that reach from −1 to 1 along x, and have no other point at either end; with those, hits are known.
-fn bodies<V: Quaternion>() -> Vec<(&'static str, Shape<V>)> {
+fn bodies<V: Vector3>() -> Vec<(&'static str, Shape<V>)> {
     let n = s::<V>;
-    let upright = V::quaternion([0.0, 0.0, -0.5_f64.sqrt(), 0.5_f64.sqrt()]);
-    let unturned = V::quaternion([0.0, 0.0, 0.0, 1.0]);
+    let upright = quaternion::<V>([0.0, 0.0, -0.5_f64.sqrt(), 0.5_f64.sqrt()]);
+    let unturned = quaternion::<V>([0.0, 0.0, 0.0, 1.0]);
     let octahedron =
         [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
     vec![
@@ -61,7 +61,7 @@ fn infinity<V: Vector>() -> V::Scalar {
 /// In the body, or on its boundary to rounding: a hit at 0 without a normal, whatever the direction.
 #[test]
 fn inside_and_touching_is_a_hit_at_zero() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for (name, body) in bodies::<V>() {
             let surface = [[0.0; 3], [0.3, 0.02, -0.01], [1.0, 0.0, 0.0], [1.0 - ulps::<V>(1.0), 0.0, 0.0]];
             for source in surface {
@@ -92,7 +92,7 @@ fn inside_and_touching_is_a_hit_at_zero() {
 /// Outside by a thousandth, and away from the body or past it: a miss, at every distance.
 #[test]
 fn receding_and_sliding_rays_miss() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for (name, body) in bodies::<V>() {
             for x in [1.001, 1.5, 1e3, 1e6] {
                 for d in directions(40) {
@@ -111,7 +111,7 @@ fn receding_and_sliding_rays_miss() {
 /// A graze within rounding may be either, but is one of both, and at the place of the graze.
 #[test]
 fn a_graze_is_decided() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for (name, body) in bodies::<V>() {
             for i in -4..=4 {
                 let x = 1.0 + ulps::<V>(f64::from(i));
@@ -131,7 +131,7 @@ fn a_graze_is_decided() {
 /// The end of the ray at the hit belongs to the ray: two ulps less may not reach, and what reaches is a hit.
 #[test]
 fn the_end_at_the_hit() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for (name, body) in bodies::<V>() {
             for source in [[3.0, 0.0, 0.0], [5.0, 0.25, -0.125]] {
                 let direction = [-1.0, 0.0, 0.0];
@@ -152,7 +152,7 @@ fn the_end_at_the_hit() {
 /// The same of moving bodies: the one starts beside the other, and closes, recedes, slides, or rests.
 #[test]
 fn motions_begin_as_rays_do() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         for (name, body) in bodies::<V>() {
             let cast = |x: f64, velocity: [f64; 3], end: f64| {
                 let other = at(cuboid::<V>([1.0, 2.0, 2.0]), [x, 0.0, 0.0]);
@@ -190,7 +190,7 @@ fn motions_begin_as_rays_do() {
 /// What is no ray is an error that names the coordinate.
 #[test]
 fn bad_rays_are_errors() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let body = cuboid::<V>([1.0; 3]);
         let cast = |source: [f64; 3], direction: [f64; 3]| {
             ray_cast(&body, Ray { source: v::<V>(source), direction: v(direction) }, RayCastOptions::default())
@@ -304,7 +304,7 @@ fn a_broken_body_spoils_no_batch() {
 /// A point is the smallest body. A ray through it grazes it, and is decided; one that passes it by misses.
 #[test]
 fn a_point_is_missed_where_it_is_not() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let point: Shape<V> = Box::new(Point::new(v::<V>([2.0, 1.0, -1.0])).expect("finite"));
         for d in directions(50) {
             let source = [2.0 - 3.0 * d[0], 1.0 - 3.0 * d[1], -1.0 - 3.0 * d[2]];

@@ -14,15 +14,6 @@ use gjk_raycast::{
 use std::f64::consts::{PI, TAU};
 
 impl Random {
-    fn direction(&mut self) -> DVec3 {
-        loop {
-            let d = DVec3::from_array([(); 3].map(|()| self.number(-1.0, 1.0)));
-            if d.length() > 0.1 && d.length() < 1.0 {
-                return d.normalize();
-            }
-        }
-    }
-
     fn rotation(&mut self) -> DQuat {
         DQuat::from_axis_angle(self.direction(), self.number(0.0, 3.0))
     }

@@ -1,8 +1,10 @@
 //! The ways to find the closest point of a simplex agree, on easy simplices and on flat ones.
 
-use crate::common::{Quaternion, directions, s, turned, ulps, v};
+use crate::common::{directions, quaternion, s, turned, ulps, v};
 use convex_support::glam::{DQuat, DVec3, Vec3A};
-use convex_support::{Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Polytope, Posed, Scalar, SupportMap, Vector};
+use convex_support::{
+    Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Polytope, Posed, Scalar, SupportMap, Vector, Vector3,
+};
 use gjk_raycast::{DistanceOptions, Ray, RayCastOptions, Status, SubAlgorithm, distance, ray_cast};
 use proptest::prelude::*;
 
@@ -71,15 +73,15 @@ fn all_converge_on_a_face_seen_at_an_angle() -> Result<(), InvalidShape> {
 /// no nearer at all.
 #[test]
 fn curved_bodies_take_as_few_steps_by_each() {
-    fn run<V: Quaternion>() {
+    fn run<V: Vector3>() {
         let n = s::<V>;
         let cylinder: Box<dyn SupportMap<Vector = V>> = Box::new(Cylinder::<V>::new(n(1.0), n(0.5)).expect("positive"));
-        let ellipsoid = Ellipsoid::new(V::ZERO, v::<V>([1.0, 0.6, 0.3]), V::quaternion([0.0, 0.0, 0.0, 1.0]));
+        let ellipsoid = Ellipsoid::new(V::ZERO, v::<V>([1.0, 0.6, 0.3]), quaternion::<V>([0.0, 0.0, 0.0, 1.0]));
         for (name, body) in [("cylinder", cylinder), ("ellipsoid", Box::new(ellipsoid.expect("positive")))] {
             let mut steps = [0; ALL.len()];
             for (i, d) in directions(200).enumerate() {
                 let t = i as f64;
-                let turn = V::quaternion([(1.1 * t).sin(), (1.7 * t).sin(), (2.3 * t).sin(), 1.5]);
+                let turn = quaternion::<V>([(1.1 * t).sin(), (1.7 * t).sin(), (2.3 * t).sin(), 1.5]);
                 let gap = 1.5 + (0.7 * t).sin().abs();
                 let cone = turned(Cone::<V>::new(n(0.75), n(0.6)).expect("positive"), turn, d.map(|c| gap * c));
                 let answers = ALL.map(|by| distance(&cone, &body, DistanceOptions::new().with_sub_algorithm(by)));

@@ -10,17 +10,8 @@ const VALID: &str = "valid numbers";
 
 type Shape = Box<dyn SupportMap<Vector = DVec3>>;
 
-fn direction(random: &mut Random) -> DVec3 {
-    loop {
-        let v = DVec3::from_array([0; 3].map(|_| random.number(-1.0, 1.0)));
-        if (0.01..1.0).contains(&v.length_squared()) {
-            return v.normalize();
-        }
-    }
-}
-
 fn hull(random: &mut Random, corners: usize) -> Shape {
-    let points = (0..corners).map(|_| direction(random) * DVec3::new(1.0, 0.8, 0.6));
+    let points = (0..corners).map(|_| random.direction() * DVec3::new(1.0, 0.8, 0.6));
     Box::new(Polytope::new(points).expect(VALID))
 }
 
@@ -67,11 +58,11 @@ fn counts(shapes: impl Fn(&mut Random) -> [Shape; 2], angle: f64) -> [usize; 2] 
     let mut counts = [0; 2];
     for _ in 0..24 {
         let [a, b] = shapes(&mut random);
-        let turn = |random: &mut Random| direction(random) * angle;
+        let turn = |random: &mut Random| random.direction() * angle;
         let [spin_a, spin_b, veer, drift] = [0; 4].map(|_| turn(&mut random));
-        let [at_a, at_b] = [0; 2].map(|_| DQuat::from_axis_angle(direction(&mut random), random.number(0.0, 6.0)));
-        let from = direction(&mut random) * 4.0;
-        let aim = direction(&mut random) * random.number(0.0, 1.2);
+        let [at_a, at_b] = [0; 2].map(|_| DQuat::from_axis_angle(random.direction(), random.number(0.0, 6.0)));
+        let from = random.direction() * 4.0;
+        let aim = random.direction() * random.number(0.0, 1.2);
         let mut told = None;
         for frame in 0..8 {
             let t = f64::from(frame);
@@ -122,14 +113,14 @@ fn a_warm_start_that_is_wrong_does_no_harm() {
     let mut random = Random(7);
     for i in 0..64 {
         let shapes = [cylinder(&mut random), hull(&mut random, 40), cone(&mut random), ellipsoid(&mut random)];
-        let turn = DQuat::from_axis_angle(direction(&mut random), 1.0);
-        let a = Posed::new(&shapes[i % 4], turn, direction(&mut random) * 4.0).expect(VALID);
-        let velocity_a = direction(&mut random) * random.number(0.0, 0.5) - a.translation();
+        let turn = DQuat::from_axis_angle(random.direction(), 1.0);
+        let a = Posed::new(&shapes[i % 4], turn, random.direction() * 4.0).expect(VALID);
+        let velocity_a = random.direction() * random.number(0.0, 0.5) - a.translation();
         let motion = Motion { velocity_a, ..Motion::default() };
         let b = &shapes[(i / 4 + 1) % 4];
         let cold = linear_cast(&a, b, motion, LinearCastOptions::new()).expect(VALID);
         let normal = cold.outcome.hit().and_then(|hit| hit.normal).unwrap_or(DVec3::X);
-        let wrong = [direction(&mut random), -normal, normal.any_orthonormal_vector(), normal, DVec3::ZERO, DVec3::NAN];
+        let wrong = [random.direction(), -normal, normal.any_orthonormal_vector(), normal, DVec3::ZERO, DVec3::NAN];
         for axis in wrong {
             let options = LinearCastOptions::new().with_axis(axis);
             let warm = linear_cast(&a, b, motion, options).expect(VALID);
@@ -148,7 +139,7 @@ fn a_warm_cast_that_uses_up_its_iterations_keeps_its_bracket() {
     let mut hits = 0;
     for _ in 0..32 {
         let [a, b] = [hull(&mut random, 40), cylinder(&mut random)];
-        let a = Posed::translated(a, direction(&mut random) * 4.0).expect(VALID);
+        let a = Posed::translated(a, random.direction() * 4.0).expect(VALID);
         let motion = Motion { velocity_a: -a.translation(), ..Motion::default() };
         let cold = linear_cast(&a, &b, motion, LinearCastOptions::new()).expect(VALID);
         let Some(hit) = cold.outcome.hit() else { continue };

@@ -34,8 +34,8 @@ impl EllipsoidDyn {
         &self.shape.center
     }
 
-    /// The orthonormal directions of the semi-axes, row by row: row k is that of `semi_axes()[k]`; the determinant is
-    /// +1.
+    /// The orthonormal directions of the semi-axes, row by row: row k is that of `semi_axes()[k]`; the determinant
+    /// is +1.
     #[must_use]
     pub fn axes(&self) -> &[f64] {
         &self.shape.axes

@@ -4,10 +4,10 @@ use core::marker::PhantomData;
 
 use num_traits::Float as _;
 
-use super::frame::{CoarseUnit, Frame, power_of_two_near};
+use super::frame::{CoarseUnit, Frame};
 use super::node::Boxes;
 use crate::glam::Vec4;
-use crate::numerics::range::is_comfortable;
+use crate::numerics::range::{is_comfortable, power_of_two_below};
 use crate::{Aabb, Scalar, Vector};
 
 /// A question to a tree of boxes: a lower bound on a quantity, such as a distance, for everything that lies in a box.
@@ -68,8 +68,7 @@ impl<V: Vector> SweptBox<V> {
     /// The box of these half extents about `source`, moving along `direction`.
     #[must_use]
     pub fn new(half_extents: V, source: V, direction: V) -> Self {
-        let unit = V::Scalar::from_f64(power_of_two_near(direction.abs().max_element().as_f64()));
-        let unit = unit.max(V::Scalar::min_positive_value());
+        let unit = power_of_two_below(direction.abs().max_element());
         let inverse = V::from_fn(|i| V::Scalar::ONE / (direction.get(i) / unit));
         Self { from: [source + half_extents, source - half_extents], inverse, unit }
     }
@@ -124,8 +123,8 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
     }
 }
 
-/// A [`SweptBox`] in the frame of a tree, with λ in a unit in which the largest coordinate of the direction is between
-/// 1 and 2.
+/// A [`SweptBox`] in the frame of a tree, with λ in a unit in which the largest coordinate of the direction
+/// is between 1 and 2.
 #[derive(Clone, Copy, Debug)]
 pub struct CoarseSweptBox<V> {
     /// What the side of a box that is met first is compared with, and what the other.

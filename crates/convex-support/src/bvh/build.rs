@@ -285,8 +285,8 @@ impl Bins {
     }
 }
 
-/// Brings the entries that `first` picks to the front, and returns their number. Every one is exchanged, which takes no
-/// branch: who is picked nobody can predict.
+/// Brings the entries that `first` picks to the front, and returns their number. Every one is exchanged, which takes
+/// no branch, since no processor can predict which are picked.
 #[inline(always)]
 fn partition<T>(entries: &mut [T], first: impl Fn(&T) -> bool) -> usize {
     let mut picked = 0;

@@ -3,6 +3,7 @@
 use num_traits::Float as _;
 
 use crate::glam::Vec3A;
+use crate::numerics::range::power_of_two_below;
 use crate::{Aabb, Scalar, Vector};
 
 /// The power of two that the farthest coordinate is seen as: large enough that squares of what is small beside it do
@@ -51,7 +52,7 @@ impl<V: Vector> Frame<V> {
             centers.get(len / 2).copied().unwrap_or(V::Scalar::ZERO)
         });
         let reach = boxes.map(|around| distance(origin, &around)).fold(0.0, f64::max);
-        Self { origin, per_unit: power_of_two_near(REACH / power_of_two_near(reach)), reach }
+        Self { origin, per_unit: power_of_two_below(REACH / power_of_two_below(reach)), reach }
     }
 
     /// Whether a box is so far from the origin that another frame is worth while.
@@ -204,7 +205,8 @@ impl CoarseUnit {
 
     /// The same for squares of bounds.
     #[inline]
-    pub(super) fn limit_of_squares(&self, limit: f64) -> f32 {
+    #[must_use]
+    pub fn limit_of_squares(&self, limit: f64) -> f32 {
         let limit = self.room(limit);
         finite_up(limit * limit)
     }
@@ -218,15 +220,4 @@ impl CoarseUnit {
 /// At least a number, and finite: the largest number is as good as a larger one, and as NaN.
 fn finite_up(limit: f64) -> f32 {
     if limit < f64::from(f32::MAX) { up(limit).min(f32::MAX) } else { f32::MAX }
-}
-
-/// The largest power of two that is not above a positive number, or the nearest that is an ordinary number; 1 for what
-/// is not positive or not finite.
-pub(super) fn power_of_two_near(x: f64) -> f64 {
-    if !(x > 0.0 && x < f64::INFINITY) {
-        return 1.0;
-    }
-    const MANTISSA: u64 = f64::MANTISSA_DIGITS as u64 - 1;
-    let exponent = x.to_bits() >> MANTISSA;
-    f64::from_bits(exponent.clamp(1, 2046) << MANTISSA)
 }

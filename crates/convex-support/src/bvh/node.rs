@@ -1,4 +1,4 @@
-//! Nodes: four boxes side by side, and what is in them.
+//! Nodes: four boxes side by side, and their children.
 
 use crate::Aabb;
 use crate::glam::{Vec3A, Vec4};

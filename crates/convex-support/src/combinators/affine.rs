@@ -61,7 +61,7 @@ impl<S: SupportMap> Affine<S> {
         let transpose = matrix.transpose();
         let onto_shape = Matrix::from_cols_fn(|j| transpose.col(j) / unit);
         let core = shape.core();
-        let lost = lost_in_origin(&matrix, core.origin, core.extent + core.radius, translation)?;
+        let lost = lost_in_origin(&matrix, core.origin, core.size(), translation)?;
         let scale = uniform_scale(matrix);
         let zero = ScalarOf::<S>::ZERO;
         let swept = if scale.is_some() { zero } else { core.radius };
@@ -190,7 +190,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
             radius,
             // The ratio of radii is known to 16 roundings.
             error: error * stretch
-                + roundings(4.0, source.norm() + core.extent + core.radius + core.origin.norm())
+                + roundings(4.0, source.norm() + core.size() + core.origin.norm())
                 + roundings(32.0, radius),
             ..line
         };

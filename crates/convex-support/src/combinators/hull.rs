@@ -53,7 +53,7 @@ impl<V: Vector> Part<V> {
         self.offset.norm() + extent + self.excess
     }
 
-    /// As of the part, and what its offset and its radius lose, and the sum with the offset.
+    /// The rounding of the part, with that of its offset and its radius, and of the sum with the offset.
     fn rounding<S: SupportMap<Vector = V>>(&self, shape: &S, hull: &Core<V>) -> Rounding<V> {
         let (part, Core { origin, radius, .. }) = (shape.rounding().swept(self.excess), shape.core());
         let [_, lost] = two_sum(radius, -hull.radius);
@@ -135,7 +135,8 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for Hull<A, B>
         }
     }
 
-    /// As of the worse part. Which is farther is told by the product of the direction with the difference, 4 roundings.
+    /// The rounding of the worse part. The product of the direction with the difference decides which is farther, 4
+    /// roundings.
     fn rounding(&self) -> Rounding<A::Vector> {
         let hull = self.core();
         let (a, b) = (self.part_a.rounding(&self.a, &hull), self.part_b.rounding(&self.b, &hull));

@@ -1,4 +1,4 @@
-//! What rounding does to a set that is mapped and moved.
+//! The rounding of a set that is mapped and moved.
 
 use core::array;
 
@@ -63,7 +63,7 @@ pub(super) fn length_of_error<V: Vector>(
     if core.origin == V::ZERO {
         return raised(turned);
     }
-    let placed = error_of_origin(core.origin, core.extent + core.radius, scale, translation);
+    let placed = error_of_origin(core.origin, core.size(), scale, translation);
     raised(turned + placed + roundings(2.0, operator_error * core.origin.norm()) + roundings(2.0, lost.norm()))
 }
 
@@ -133,7 +133,7 @@ fn without<V: Vector>(v: V, left_out: [bool; 3]) -> V {
     V::from_fn(|i| if left_out[i] { V::Scalar::ZERO } else { v.get(i) })
 }
 
-/// A linear map and a translation, and what is known of their rounding.
+/// A linear map and a translation, with bounds on their rounding.
 pub(super) struct Placement<'a, V: Vector> {
     pub(super) matrix: &'a V::Matrix,
     /// A bound on the error of every entry of the matrix, except in rows `±eⱼ`, which are exact.

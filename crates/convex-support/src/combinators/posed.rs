@@ -78,9 +78,9 @@ impl<S: SupportMap> Posed<S> {
     ) -> Result<Self, InvalidShape> {
         let translation = finite("translation", translation)?;
         let core = shape.core();
-        let lost = lost_in_origin(&rotation, core.origin, core.extent + core.radius, translation)?;
+        let lost = lost_in_origin(&rotation, core.origin, core.size(), translation)?;
         let error = length_of_error(&core, Scalar::ONE, Scalar::from_f64(errors.operator), translation, lost);
-        let skew = if errors.operator > 0.0 { Scalar::ZERO } else { skew(&rotation) * (core.extent + core.radius) };
+        let skew = if errors.operator > 0.0 { Scalar::ZERO } else { skew(&rotation) * core.size() };
         Ok(Self { shape, rotation, rotation_error: Scalar::from_f64(errors.entry), translation, lost, error, skew })
     }
 
@@ -242,7 +242,7 @@ impl<S: SupportMap> SupportMap for Posed<S> {
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
         let core = self.shape.core();
         let line = line.within(self.error + self.skew);
-        let size = core.extent + core.radius + line.radius;
+        let size = core.size() + line.radius;
         // A ball, whichever way it is turned.
         if core.origin == S::Vector::ZERO && core.kind == CoreKind::Point(S::Vector::ZERO) {
             let line = line.sweeping(core.radius);
@@ -275,7 +275,7 @@ impl<S: SupportMap> SupportMap for Posed<S> {
             scale: Some(Scalar::ONE),
             translation: self.translation,
             lost: self.lost,
-            is_near: is_near(core.origin, core.extent + core.radius),
+            is_near: is_near(core.origin, core.size()),
         };
         placement.image(self.shape.rounding(), core.origin, core.extent)
     }
@@ -301,7 +301,7 @@ impl<S: CrossedByLine> CrossedByLine for Posed<S> {
             lanes::ball(lines, self.translation, core.radius, self.error + self.skew);
             return true;
         }
-        let counted = lanes::before_turn(lines, self.frame(&core, core.extent + core.radius));
+        let counted = lanes::before_turn(lines, self.frame(&core, core.size()));
         let is_known = self.shape.certain_crossings(lines);
         if is_known {
             lanes::after_turn::<S::Vector>(lines, self.rotation, &counted);

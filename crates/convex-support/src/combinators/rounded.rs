@@ -76,7 +76,7 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
         self.shape.core_closest_point(x)
     }
 
-    /// As of the shape; the sum of the radii is rounded, unless one is zero.
+    /// The rounding of the shape; the sum of the radii is rounded, unless one is zero.
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
         self.shape.certain_crossing(line.sweeping(self.radius))
@@ -91,7 +91,7 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
         self.shape.core_parallelotope()
     }
 
-    /// As of the shape; the sum of the radii is rounded.
+    /// The rounding of the shape; the sum of the radii is rounded.
     fn rounding(&self) -> Rounding<S::Vector> {
         let [_, lost] = two_sum(self.shape.core().radius, self.radius);
         self.shape.rounding().with_radius_error(lost.abs())

@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::twofold::{two_product, two_sum};
+use super::double_double::DoubleDouble;
 
 /// What an operation on numbers of two parts loses at most, as a part of its result: a sum `2⁻¹⁰³`, a product or a
 /// root `2⁻¹⁰⁰`, a quotient `2⁻⁹⁹` (Joldes, Muller and Popescu, *Tight and rigorous error bounds for basic building
@@ -12,11 +12,10 @@ const LOST: f64 = f64::EPSILON * f64::EPSILON * 64.0;
 /// What bounds on errors are raised by, since they are rounded themselves.
 const RAISED: f64 = 1.0 + 16.0 * f64::EPSILON;
 
-/// The number `high + low`, which is wrong by `error` at most.
+/// A number that is wrong by `error` at most.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded {
-    high: f64,
-    low: f64,
+    value: DoubleDouble,
     error: f64,
 }
 
@@ -24,27 +23,27 @@ impl Bounded {
     /// The sum of two numbers, exactly.
     #[must_use]
     pub fn sum(a: f64, b: f64) -> Self {
-        let [high, low] = two_sum(a, b);
-        Self { high, low, error: 0.0 }
+        Self { value: DoubleDouble::sum(a, b), error: 0.0 }
     }
 
-    fn new(high: f64, low: f64, error: f64) -> Self {
-        let [high, low] = two_sum(high, low);
-        Self { high, low, error: (error + LOST * high.abs()) * RAISED }
+    /// What an operation makes of numbers that leave it wrong by this.
+    fn new(value: DoubleDouble, error: f64) -> Self {
+        Self { value, error: (error + LOST * value.high.abs()) * RAISED }
     }
 
     /// Numbers that it is certainly not less and not greater than.
     #[must_use]
     pub fn bounds(self) -> [f64; 2] {
-        let wide = self.error + self.low.abs() + f64::EPSILON * self.high.abs();
+        let DoubleDouble { high, low } = self.value;
+        let wide = self.error + low.abs() + f64::EPSILON * high.abs();
         // Where the low part and the error are less than half a unit in the last place, the next numbers are bounds.
-        if wide.is_finite() { [self.high - wide, self.high + wide] } else { [f64::NEG_INFINITY, f64::INFINITY] }
+        if wide.is_finite() { [high - wide, high + wide] } else { [f64::NEG_INFINITY, f64::INFINITY] }
     }
 
     /// Whether it is certainly less than zero.
     #[must_use]
     pub fn is_negative(self) -> bool {
-        self.high + self.low < -self.error * RAISED
+        self.value.value() < -self.error * RAISED
     }
 
     /// Whether it is certainly greater than zero.
@@ -53,24 +52,28 @@ impl Bounded {
         (-self).is_negative()
     }
 
+    /// A bound on the magnitude of the number as it is computed.
+    fn size(self) -> f64 {
+        self.value.high.abs() + self.value.low.abs()
+    }
+
     /// Its square.
     #[must_use]
     pub fn squared(self) -> Self {
         self * self
     }
 
-    /// The root of a number that is certainly positive: a step of Newton's method. With `√x − √(x − e) ≤ e/√x`.
+    /// The root of a number that is certainly positive. With `√x − √(x − e) ≤ e/√x`.
     #[must_use]
     pub fn sqrt(self) -> Self {
-        let root = num_traits::Float::sqrt(self.high);
-        let rest = self - Self::from(root) * Self::from(root);
-        Self::new(root, (rest.high + rest.low) / (root + root), self.error / root)
+        let root = self.value.sqrt();
+        Self::new(root, self.error / root.high)
     }
 }
 
 impl From<f64> for Bounded {
     fn from(high: f64) -> Self {
-        Self { high, low: 0.0, error: 0.0 }
+        Self { value: high.into(), error: 0.0 }
     }
 }
 
@@ -78,7 +81,7 @@ impl Neg for Bounded {
     type Output = Self;
 
     fn neg(self) -> Self {
-        Self { high: -self.high, low: -self.low, ..self }
+        Self { value: -self.value, ..self }
     }
 }
 
@@ -86,9 +89,7 @@ impl Add for Bounded {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        let ([high, lost], [low, lower]) = (two_sum(self.high, other.high), two_sum(self.low, other.low));
-        let [high, lost] = two_sum(high, lost + low);
-        Self::new(high, lost + lower, self.error + other.error)
+        Self::new(self.value + other.value, self.error + other.error)
     }
 }
 
@@ -104,12 +105,10 @@ impl Mul for Bounded {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        let [high, lost] = two_product(self.high, other.high);
-        let low = lost + (self.high * other.low + self.low * other.high);
-        let (a, b) = (self.high.abs() + self.low.abs(), other.high.abs() + other.low.abs());
+        let (a, b) = (self.size(), other.size());
         let error = a * other.error + b * self.error + self.error * other.error;
-        let underflow = if high == 0.0 && (a == 0.0 || b == 0.0) { 0.0 } else { f64::MIN_POSITIVE };
-        Self::new(high, low, error + underflow)
+        let underflow = if a == 0.0 || b == 0.0 { 0.0 } else { f64::MIN_POSITIVE };
+        Self::new(self.value * other.value, error + underflow)
     }
 }
 
@@ -118,12 +117,10 @@ impl Div for Bounded {
 
     /// The quotient by a number that is certainly not zero: two steps of long division.
     fn div(self, other: Self) -> Self {
-        let first = self.high / other.high;
-        let rest = self - Self::from(first) * Self { error: 0.0, ..other };
-        let second = (rest.high + rest.low) / other.high;
-        let least = (other.high.abs() - other.low.abs() - other.error) * (1.0 - 4.0 * f64::EPSILON);
-        let error = (self.error + (first.abs() + second.abs()) * other.error) / least + f64::MIN_POSITIVE;
+        let quotient = Self { value: self.value / other.value, error: 0.0 };
+        let least = (other.value.high.abs() - other.value.low.abs() - other.error) * (1.0 - 4.0 * f64::EPSILON);
+        let error = (self.error + quotient.size() * other.error) / least + f64::MIN_POSITIVE;
         // An error as large as the number that is divided by leaves nothing known.
-        Self::new(first, second, if least > 0.0 { error } else { f64::INFINITY })
+        Self::new(quotient.value, if least > 0.0 { error } else { f64::INFINITY })
     }
 }

@@ -3,6 +3,7 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use super::double_double::DoubleDouble;
 use super::elementary::hypot;
 use super::range::power_of_two_below;
 use crate::InvalidShape;
@@ -42,7 +43,7 @@ pub fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, Invali
         }
     }
 
-    let mut x = x.map(|row| row.map(|entry| Twofold { high: entry, low: 0.0 }));
+    let mut x = x.map(|row| row.map(DoubleDouble::from));
     let mut g = [[0.0; 3]; 3];
     let mut left: [bool; 3] = core::array::from_fn(|i| i < n);
     for column in g.iter_mut().take(n) {
@@ -104,60 +105,6 @@ fn orthogonalise(g: &mut [[f64; 3]; 3], i: usize, j: usize) -> bool {
     g[i] = core::array::from_fn(|k| cosine * p[k] - sine * q[k]);
     g[j] = core::array::from_fn(|k| sine * p[k] + cosine * q[k]);
     true
-}
-
-/// `high + low`, not rounded: some 106 bits (Dekker 1971).
-#[derive(Clone, Copy)]
-struct Twofold {
-    high: f64,
-    low: f64,
-}
-
-impl Twofold {
-    /// `a + b` for |a| ≥ |b|.
-    fn of(a: f64, b: f64) -> Self {
-        let high = a + b;
-        Self { high, low: b - (high - a) }
-    }
-
-    /// `a·b` exactly, by Veltkamp's splitting.
-    fn product(a: f64, b: f64) -> Self {
-        let split = |x: f64| {
-            let t = 134_217_729.0 * x; // 2²⁷ + 1
-            let high = t - (t - x);
-            (high, x - high)
-        };
-        let high = a * b;
-        let ((a1, a2), (b1, b2)) = (split(a), split(b));
-        Self { high, low: ((a1 * b1 - high) + a1 * b2 + a2 * b1) + a2 * b2 }
-    }
-}
-
-impl core::ops::Sub for Twofold {
-    type Output = Self;
-    fn sub(self, rhs: Self) -> Self {
-        let high = self.high - rhs.high;
-        let t = high - self.high;
-        let low = (self.high - (high - t)) - (rhs.high + t);
-        Self::of(high, low + (self.low - rhs.low))
-    }
-}
-
-impl core::ops::Mul for Twofold {
-    type Output = Self;
-    fn mul(self, rhs: Self) -> Self {
-        let p = Self::product(self.high, rhs.high);
-        Self::of(p.high, p.low + (self.high * rhs.low + self.low * rhs.high))
-    }
-}
-
-impl core::ops::Div for Twofold {
-    type Output = Self;
-    fn div(self, rhs: Self) -> Self {
-        let first = self.high / rhs.high;
-        let rest = self - rhs * Self { high: first, low: 0.0 };
-        Self::of(first, rest.high / rhs.high)
-    }
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

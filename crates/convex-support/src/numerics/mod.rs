@@ -2,6 +2,7 @@
 
 pub mod bound;
 pub mod bounded;
+pub mod double_double;
 pub mod elementary;
 pub mod jacobi;
 pub mod orientation;

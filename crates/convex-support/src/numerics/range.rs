@@ -26,16 +26,13 @@ pub fn comfortable_unit_of_length<S: Scalar>(largest: S) -> S {
 
 /// The largest power of two that is not above `value`, or the smallest normal one; 1 where `value` is not positive or
 /// not finite.
-#[cold]
+#[inline]
 pub fn power_of_two_below<S: Scalar>(value: S) -> S {
-    if value <= S::ZERO || !value.is_finite() {
+    if !(value > S::ZERO && value.is_finite()) {
         return S::ONE;
     }
-    let (_, exponent, _) = num_traits::Float::integer_decode(value);
-    // The mantissa is an integer of as many bits as EPSILON says, of which some of a subnormal number are zero. Two
-    // factors, since the reciprocal of the least power is none.
-    let half = i32::from(exponent) / 2;
-    power_of_two::<S>(half) / S::EPSILON * power_of_two(i32::from(exponent) - half)
+    let exponent = value.as_f64().to_bits() & f64::INFINITY.to_bits();
+    S::from_f64(f64::from_bits(exponent)).max(S::min_positive_value())
 }
 
 /// What is rarely asked of a vector, such as of one whose square over- or underflows; once in a program for each

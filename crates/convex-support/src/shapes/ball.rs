@@ -48,14 +48,7 @@ impl<V: Vector> SupportMap for Ball<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core {
-            origin: V::ZERO,
-            radius: self.radius,
-            rolling_radius: V::Scalar::ZERO,
-            extent: V::Scalar::ZERO,
-            error: V::Scalar::ZERO,
-            kind: CoreKind::Point(V::ZERO),
-        }
+        Core { radius: self.radius, ..Core::exact(CoreKind::Point(V::ZERO), V::Scalar::ZERO) }
     }
 
     #[inline]

@@ -7,7 +7,7 @@ use crate::line_crossing::{NearLine, Spine, closely, lanes};
 use crate::support::support_of_parts;
 use crate::{
     CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines, Parallelotope,
-    Rounding, Scalar, SupportMap, Vector,
+    Rounding, SupportMap, Vector,
 };
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
@@ -60,14 +60,8 @@ impl<V: Vector> SupportMap for Capsule<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core {
-            origin: V::ZERO,
-            radius: self.radius,
-            rolling_radius: V::Scalar::ZERO,
-            extent: self.half_height,
-            error: V::Scalar::ZERO,
-            kind: CoreKind::Segment { middle: V::ZERO, half: V::axis(1) * self.half_height },
-        }
+        let kind = CoreKind::Segment { middle: V::ZERO, half: V::axis(1) * self.half_height };
+        Core { radius: self.radius, ..Core::exact(kind, self.half_height) }
     }
 
     #[inline]

@@ -63,14 +63,7 @@ impl<V: Vector> SupportMap for Cuboid<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core {
-            origin: V::ZERO,
-            radius: V::Scalar::ZERO,
-            rolling_radius: V::Scalar::ZERO,
-            extent: self.extent,
-            error: V::Scalar::ZERO,
-            kind: CoreKind::Polytope,
-        }
+        Core::exact(CoreKind::Polytope, self.extent)
     }
 
     #[inline]

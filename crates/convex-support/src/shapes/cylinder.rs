@@ -86,14 +86,7 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core {
-            origin: V::ZERO,
-            radius: V::Scalar::ZERO,
-            rolling_radius: V::Scalar::ZERO,
-            extent: self.extent,
-            error: roundings(9.0, self.radius),
-            kind: CoreKind::Curved,
-        }
+        Core { error: roundings(9.0, self.radius), ..Core::exact(CoreKind::Curved, self.extent) }
     }
 
     #[inline(always)]

@@ -201,15 +201,8 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        let extent = self.semi_axes.max_element();
-        Core {
-            origin: self.center,
-            radius: V::Scalar::ZERO,
-            rolling_radius: self.rolling_radius,
-            extent,
-            error: self.error,
-            kind: CoreKind::Curved,
-        }
+        let exact = Core::exact(CoreKind::Curved, self.semi_axes.max_element());
+        Core { origin: self.center, rolling_radius: self.rolling_radius, error: self.error, ..exact }
     }
 
     #[inline(always)]

@@ -46,15 +46,7 @@ impl<V: Vector> SupportMap for Point<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        let zero = V::Scalar::ZERO;
-        Core {
-            origin: self.at,
-            radius: zero,
-            rolling_radius: zero,
-            extent: zero,
-            error: zero,
-            kind: CoreKind::Point(V::ZERO),
-        }
+        Core { origin: self.at, ..Core::exact(CoreKind::Point(V::ZERO), V::Scalar::ZERO) }
     }
 
     #[inline]

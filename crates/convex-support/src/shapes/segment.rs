@@ -82,14 +82,7 @@ impl<V: Vector> SupportMap for Segment<V> {
     fn core(&self) -> Core<V> {
         let (origin, extent) = (middle(self.points), extent(&self.points).norm());
         let (middle, half) = self.middle_and_half();
-        Core {
-            origin,
-            radius: V::Scalar::ZERO,
-            rolling_radius: V::Scalar::ZERO,
-            extent,
-            error: roundings(9.0, extent),
-            kind: CoreKind::Segment { middle, half },
-        }
+        Core { origin, error: roundings(9.0, extent), ..Core::exact(CoreKind::Segment { middle, half }, extent) }
     }
 
     #[inline]
@@ -124,7 +117,7 @@ impl<V: Vector> SupportMap for Segment<V> {
         Some(Parallelotope { center, half_edges: [half, V::ZERO, V::ZERO] })
     }
 
-    /// Which end is farther is told by the product of the direction with the difference, 4 roundings.
+    /// The product of the direction with the difference decides which end is farther, 4 roundings.
     fn rounding(&self) -> Rounding<V> {
         let [a, b] = self.points;
         rounding_of_points(&self.points).with_error(roundings_of(4.0, (b - a).abs()))

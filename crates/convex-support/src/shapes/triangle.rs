@@ -105,15 +105,9 @@ impl<V: Vector> SupportMap for Triangle<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        let (origin, extent) = (middle(self.points), extent(&self.points).norm());
-        Core {
-            origin,
-            radius: V::Scalar::ZERO,
-            rolling_radius: V::Scalar::ZERO,
-            extent,
-            error: roundings(24.0, extent),
-            kind: CoreKind::Polytope,
-        }
+        let extent = extent(&self.points).norm();
+        let exact = Core::exact(CoreKind::Polytope, extent);
+        Core { origin: middle(self.points), error: roundings(24.0, extent), ..exact }
     }
 
     #[inline]
@@ -142,7 +136,7 @@ impl<V: Vector> SupportMap for Triangle<V> {
         feature.collect(direction, slab, 0..3, |i| points[i]);
     }
 
-    /// Which corner is farthest is told by the products of the direction with two edges, 4 roundings each.
+    /// The products of the direction with two edges decide which corner is farthest, 4 roundings each.
     fn rounding(&self) -> Rounding<V> {
         let [a, b, c] = self.points;
         rounding_of_points(&self.points).with_error(roundings_of(8.0, (b - a).abs().max((c - a).abs())))

@@ -1,38 +1,27 @@
 //! Ellipsoids as the search sees them, in either dimension three coordinates, and bounds in the norm of a link.
 
-use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
+use convex_support::glam::Vec4;
+use convex_support::{
+    Aabb, Bound, Boxes, CoarseBound, CoarseUnit, Ellipsoid, Frame, Matrix, Scalar, Vector, outer_box,
+};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use crate::hierarchy::Aabb;
 use crate::numerics::{dot, sub};
 
 /// A link's own coordinates: rows Rᵀ/a of the map to the ball.
-pub(super) struct Frame {
+pub(super) struct LinkFrame {
     center: [f64; 3],
     rows: [[f64; 3]; 3],
     /// The greatest semi-axis.
     radius: f64,
 }
 
-impl Frame {
+impl LinkFrame {
     pub(super) fn new<V: Vector>(link: &Ellipsoid<V>) -> Self {
         let (axes, a): ([[f64; 3]; 3], [f64; 3]) = (columns(link.axes()), padded(link.semi_axes()));
         let rows = core::array::from_fn(|i| if i < V::DIM { axes[i].map(|x| x / a[i]) } else { [0.0; 3] });
         Self { center: padded(link.center()), rows, radius: radius(link) }
-    }
-
-    /// The distance of the ball's centre from a box around the box.
-    #[inline]
-    pub(super) fn box_distance(&self, b: &Aabb) -> f64 {
-        let r = sub(b.center, self.center);
-        let mut squared = 0.0;
-        for row in &self.rows {
-            let half = row[0].abs() * b.half[0] + row[1].abs() * b.half[1] + row[2].abs() * b.half[2];
-            let gap = (dot(*row, r).abs() - half).max(0.0);
-            squared += gap * gap;
-        }
-        squared.sqrt()
     }
 
     /// A lower bound on that distance from a ball around the obstacle: (‖r‖ − radius)/a_max.
@@ -73,6 +62,68 @@ impl Frame {
     }
 }
 
+/// The distance of the ball's centre from a box around the box.
+impl<V: Vector> Bound<V> for LinkFrame {
+    type Coarse = CoarseDistance;
+
+    #[inline]
+    fn bound(&self, around: &Aabb<V>) -> V::Scalar {
+        let (r, half) = (sub(padded(around.center()), self.center), padded(around.half_extents()));
+        let gaps = self.rows.map(|row| (dot(row, r).abs() - dot(row.map(f64::abs), half)).max(0.0));
+        V::Scalar::from_f64(dot(gaps, gaps).sqrt())
+    }
+
+    /// In the frame of a tree, `x = o + ξ/k`, a coordinate is `(n·ξ + k·n·(o − c))/k` with `n` a row, here in units of
+    /// the largest number of all rows.
+    fn coarse(&self, frame: &Frame<V>) -> CoarseDistance {
+        let largest = self.rows.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        let (origin, per_unit) = (padded(frame.origin()), frame.unit().per_unit());
+        let rows = self.rows.map(|row| row.map(|x| x / largest));
+        let from_center = rows.map(|n| per_unit * dot(n, sub(origin, self.center)));
+        let terms =
+            rows.map(|n| per_unit * dot(n.map(f64::abs), [0, 1, 2].map(|i| origin[i].abs() + self.center[i].abs())));
+        let splat = |x: f64| Vec4::splat(x as f32);
+        CoarseDistance {
+            rows: rows.map(|n| n.map(splat)),
+            from_center: from_center.map(splat),
+            room: terms.map(|terms| splat(16.0 * V::Scalar::EPSILON.as_f64() * terms)),
+            unit: CoarseUnit::new::<V::Scalar>(per_unit / largest),
+        }
+    }
+}
+
+/// A [`LinkFrame`] in the frame of a tree: the bounds are the squares of distances.
+pub(super) struct CoarseDistance {
+    rows: [[Vec4; 3]; 3],
+    from_center: [Vec4; 3],
+    /// What the numbers of the bodies are rounded by, beside what single precision is.
+    room: [Vec4; 3],
+    unit: CoarseUnit,
+}
+
+impl CoarseBound for CoarseDistance {
+    fn bounds(&self, boxes: &Boxes) -> Vec4 {
+        let half = Vec4::splat(0.5);
+        let mut squared = Vec4::ZERO;
+        for ((row, from_center), room) in self.rows.iter().zip(self.from_center).zip(self.room) {
+            let (mut along, mut reach, mut terms) = (from_center, Vec4::ZERO, from_center.abs());
+            for (i, &n) in row.iter().enumerate() {
+                let (low, high) = (n * boxes.min(i) * half, n * boxes.max(i) * half);
+                (along, reach, terms) =
+                    (along + (low + high), reach + (high - low).abs(), terms + low.abs() + high.abs());
+            }
+            let gap = along.abs() - reach - (terms * (16.0 * f32::EPSILON) + room);
+            // What is not a number says nothing.
+            squared += Vec4::select(gap.cmpgt(Vec4::ZERO), gap * gap, Vec4::ZERO);
+        }
+        squared.min(Vec4::MAX)
+    }
+
+    fn limit(&self, limit: f64) -> f32 {
+        self.unit.limit_of_squares(limit)
+    }
+}
+
 /// The greatest semi-axis.
 pub(super) fn radius<V: Vector>(e: &Ellipsoid<V>) -> f64 {
     e.semi_axes().max_element().as_f64()
@@ -88,14 +139,9 @@ pub(super) fn columns<M: Matrix>(m: M) -> [[f64; 3]; 3] {
     core::array::from_fn(|j| if j < M::Vector::DIM { padded(m.col(j)) } else { [0.0; 3] })
 }
 
-/// The box around an ellipsoid: half extents √diag(Q⁻¹).
-pub(super) fn around<V: Vector>(e: &Ellipsoid<V>) -> Aabb {
-    let (center, axes, a) = (padded(e.center()), columns(e.axes()), padded(e.semi_axes()));
-    let half = core::array::from_fn(|i| {
-        let extent = (0..3).map(|k| (axes[k][i] * a[k]) * (axes[k][i] * a[k])).sum::<f64>().sqrt();
-        extent + 8.0 * f64::EPSILON * (a[0].max(a[1]).max(a[2]) + center[i].abs())
-    });
-    Aabb { center, half }
+/// The box around an ellipsoid.
+pub(super) fn around<V: Vector>(e: &Ellipsoid<V>) -> Aabb<V> {
+    outer_box(e).unwrap_or_else(Aabb::everything)
 }
 
 /// How far any point of the ellipsoid can have moved: |Δc| + ‖Δ(R·diag(a))‖.

@@ -33,9 +33,15 @@ impl<V: Vector> Least<V> {
         self
     }
 
+    /// The margin beyond which a pair is certainly not the least.
+    pub(super) fn limit(&self) -> Limit {
+        let margin = self.0.map_or(f64::INFINITY, |(least, ..)| least.margin.as_f64());
+        Limit(margin, V::Scalar::EPSILON.as_f64())
+    }
+
     /// Whether a pair with √(1 + m) ≥ `scale` is certainly not the least.
     pub(super) fn excludes(&self, scale: f64) -> bool {
-        self.0.is_some_and(|(least, ..)| Limit(least.margin.as_f64(), V::Scalar::EPSILON.as_f64()).excludes(scale))
+        self.limit().excludes(scale)
     }
 
     /// √(1 + m) of the least, from below.
@@ -59,8 +65,17 @@ impl Limit {
     /// does.
     #[inline]
     pub(super) fn excludes(self, scale: f64) -> bool {
-        let Self(margin, epsilon) = self;
         let scale = scale.max(0.0);
-        scale * scale > (1.0 + margin) * (1.0 + 64.0 * epsilon) + 64.0 * epsilon
+        scale * scale > self.squared()
+    }
+
+    /// The greatest √(1 + m) that is not excluded, but for rounding.
+    pub(super) fn scale(self) -> f64 {
+        self.squared().sqrt()
+    }
+
+    fn squared(self) -> f64 {
+        let Self(margin, epsilon) = self;
+        (1.0 + margin) * (1.0 + 64.0 * epsilon) + 64.0 * epsilon
     }
 }

@@ -8,16 +8,16 @@ mod search;
 mod seen;
 
 use alloc::vec::Vec;
+use core::ops::ControlFlow;
 
-use convex_support::{Ellipsoid, Scalar, Vector};
+use convex_support::{Bvh, Ellipsoid, Scalar, Vector};
 
 pub use self::brute_force::clearance;
-use self::frame::{Frame, around, displacement, radius};
+use self::frame::{LinkFrame, around, displacement, radius};
 use self::least::{Least, Limit};
 pub use self::result::{ClearanceResult, LeftOut, NearPair};
 use self::search::{Count, Normals, Search};
 use self::seen::Seen;
-use crate::hierarchy::{Aabb, Hierarchy};
 use crate::{Answer, EllipsoidPair, InvalidQuery, Margin, MarginOptions, free_margin};
 
 /// A scene of obstacles that finds the least margin of a robot's links along a motion, without computing most pairs.
@@ -54,7 +54,7 @@ pub struct Clearance<V: Vector> {
     obstacles: Vec<Ellipsoid<V>>,
     /// The greatest semi-axis of each obstacle.
     radii: Vec<f64>,
-    tree: Hierarchy,
+    tree: Bvh<V>,
     /// How far any point of any obstacle can have moved in all calls of `move_obstacles`.
     drift: f64,
     links: Vec<Seen<V>>,
@@ -71,12 +71,12 @@ impl<V: Vector> Clearance<V> {
         if obstacles.is_empty() {
             return Err(InvalidQuery::NoObstacles);
         }
-        let boxes: Vec<Aabb> = obstacles.iter().map(around).collect();
+        let boxes: Vec<_> = obstacles.iter().map(around).collect();
         Ok(Self {
             options,
             obstacles: obstacles.to_vec(),
             radii: obstacles.iter().map(radius).collect(),
-            tree: Hierarchy::new(&boxes),
+            tree: Bvh::new(&boxes),
             drift: 0.0,
             links: Vec::new(),
             last: None,
@@ -103,8 +103,7 @@ impl<V: Vector> Clearance<V> {
         self.obstacles.copy_from_slice(obstacles);
         self.radii.clear();
         self.radii.extend(obstacles.iter().map(radius));
-        let boxes: Vec<Aabb> = obstacles.iter().map(around).collect();
-        self.tree.refit(&boxes);
+        self.tree.refit(|index| around(&obstacles[index]));
         Ok(())
     }
 
@@ -133,7 +132,8 @@ impl<V: Vector> Clearance<V> {
             }
             // What is solved already is as near as the least at most.
             let nearest = solved.map_or(f64::INFINITY, |_| least.scale());
-            let mut search = Search { frame: Frame::new(link), least, count, nearest, solved, normals: seen.normals };
+            let frame = LinkFrame::new(link);
+            let mut search = Search { frame: &frame, least, count, nearest, solved, normals: seen.normals };
             search.run(&self.tree, &self.obstacles, &self.radii, link, index, self.options);
             *seen = Seen { link: *link, scale: search.nearest, drift: self.drift, normals: search.normals };
             Search { least, count, .. } = search;
@@ -192,20 +192,17 @@ impl<V: Vector> Clearance<V> {
         }
         let limit = Limit(threshold.as_f64(), V::Scalar::EPSILON.as_f64());
         for (index, link) in links.iter().enumerate() {
-            let frame = Frame::new(link);
-            self.tree.search(
-                |bounds| !limit.excludes(frame.box_distance(bounds)),
-                |obstacle| {
-                    let other = &self.obstacles[obstacle];
-                    if limit.excludes(frame.plane_distance(other)) {
-                        return;
-                    }
+            let frame = LinkFrame::new(link);
+            let _ = self.tree.within(&frame, V::Scalar::from_f64(limit.scale()), |obstacle| {
+                let other = &self.obstacles[obstacle];
+                if !limit.excludes(frame.plane_distance(other)) {
                     let answer = EllipsoidPair::new(link, other, self.options).margin();
                     if answer.margin <= threshold {
                         tell(NearPair { margin: *answer, link: index, obstacle }, answer);
                     }
-                },
-            );
+                }
+                ControlFlow::Continue(())
+            });
         }
         Ok(())
     }

@@ -1,13 +1,14 @@
 //! One link among the obstacles: the nearest boxes first, and the cheapest bound that leaves an obstacle out.
 
-use convex_support::{Ellipsoid, Vector};
+use core::ops::ControlFlow;
+
+use convex_support::{Bvh, Ellipsoid, Scalar, Vector};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
 use super::LeftOut;
-use super::frame::{Frame, columns, padded};
+use super::frame::{LinkFrame, columns, padded};
 use super::least::{Least, scale};
-use crate::hierarchy::{Hierarchy, Node};
 use crate::numerics::dot;
 use crate::{Margin, MarginOptions, free_margin};
 
@@ -23,8 +24,8 @@ pub(super) struct Count {
 }
 
 /// One link's way through the tree.
-pub(super) struct Search<V: Vector> {
-    pub(super) frame: Frame,
+pub(super) struct Search<'f, V: Vector> {
+    pub(super) frame: &'f LinkFrame,
     pub(super) least: Least<V>,
     pub(super) count: Count,
     /// √(1 + m) is at least this for all pairs seen or left out so far.
@@ -34,58 +35,39 @@ pub(super) struct Search<V: Vector> {
     pub(super) normals: Normals,
 }
 
-impl<V: Vector> Search<V> {
+impl<V: Vector> Search<'_, V> {
     pub(super) fn run(
         &mut self,
-        tree: &Hierarchy,
+        tree: &Bvh<V>,
         obstacles: &[Ellipsoid<V>],
         radii: &[f64],
         link: &Ellipsoid<V>,
         index: usize,
         options: MarginOptions,
     ) {
-        // Halves are equal: the depth is below 64 for any list that fits a memory, and each level leaves one node.
-        let mut stack = [(0, 0.0); 64];
-        let mut depth = 1;
-        stack[0] = (0, self.frame.box_distance(tree.bounds(0)));
-        while depth > 0 {
-            depth -= 1;
-            let (node, distance) = stack[depth];
-            if self.least.excludes(distance / REACH) {
-                self.nearest = self.nearest.min(distance);
-                self.count.left_out.by_box += tree.count(node);
-                continue;
+        let reach = |least: &Least<V>| least.limit().scale() * REACH;
+        let mut met = 0;
+        let _ = tree.search(self.frame, V::Scalar::from_f64(reach(&self.least)), |obstacle, _| {
+            met += 1;
+            if self.solved == Some(obstacle) {
+                self.solved = None;
+            } else if let Some((bound, reason)) = self.leave_out(&obstacles[obstacle], radii[obstacle], obstacle) {
+                self.nearest = self.nearest.min(bound);
+                *reason(&mut self.count.left_out) += 1;
+            } else {
+                let margin = free_margin(link, &obstacles[obstacle], options);
+                self.count.solved += 1;
+                self.nearest = self.nearest.min(scale(margin));
+                self.least.take(margin, index, obstacle);
+                self.normals.keep(obstacle, normal(&obstacles[obstacle], &margin));
             }
-            match tree.node(node) {
-                Node::Split(a, b) => {
-                    let (x, y) = (self.frame.box_distance(tree.bounds(a)), self.frame.box_distance(tree.bounds(b)));
-                    let (near, far) = if x <= y { ((a, x), (b, y)) } else { ((b, y), (a, x)) };
-                    stack[depth] = far;
-                    stack[depth + 1] = near;
-                    depth += 2;
-                }
-                Node::Leaf(items) => {
-                    for &obstacle in items {
-                        if self.solved == Some(obstacle) {
-                            self.solved = None;
-                            continue;
-                        }
-                        if let Some((bound, reason)) = self.leave_out(&obstacles[obstacle], radii[obstacle], obstacle) {
-                            self.nearest = self.nearest.min(bound);
-                            *reason(&mut self.count.left_out) += 1;
-                            continue;
-                        }
-                        let margin = free_margin(link, &obstacles[obstacle], options);
-                        self.count.solved += 1;
-                        self.nearest = self.nearest.min(scale(margin));
-                        self.least.take(margin, index, obstacle);
-                        self.normals.keep(obstacle, normal(&obstacles[obstacle], &margin));
-                    }
-                }
-            }
+            ControlFlow::Continue(V::Scalar::from_f64(reach(&self.least)))
+        });
+        if met < obstacles.len() {
+            self.nearest = self.nearest.min(reach(&self.least));
         }
-        // Not met again: it was counted with a box that was left out.
-        self.count.left_out.by_box -= usize::from(self.solved.is_some());
+        // One that was solved before, and was not met again, counts as solved.
+        self.count.left_out.by_box += obstacles.len() - met - usize::from(self.solved.is_some());
     }
 
     /// A bound on √(1 + m) that shows the obstacle not to be the least, and what it is due to: the cheapest that does.

@@ -58,19 +58,21 @@ pub(super) enum Mover {
 }
 
 impl Mover {
-    fn other(self) -> Self {
+    /// It, of the first and the second.
+    pub(super) fn of<T>(self, first: T, second: T) -> T {
         match self {
-            Self::First => Self::Second,
-            Self::Second => Self::First,
+            Self::First => first,
+            Self::Second => second,
         }
+    }
+
+    fn other(self) -> Self {
+        self.of(Self::Second, Self::First)
     }
 
     /// Its place among ‖N‖, h₁, h₂.
     fn index(self) -> usize {
-        match self {
-            Self::First => 1,
-            Self::Second => 2,
-        }
+        self.of(1, 2)
     }
 }
 
@@ -105,6 +107,13 @@ pub(super) struct Form {
     pub(super) slope: f64,
     pub(super) curvature: f64,
     pub(super) units: Units,
+}
+
+impl Form {
+    /// The value itself.
+    pub(super) fn of_value(units: Units) -> Self {
+        Self { slope: 1.0, curvature: 0.0, units }
+    }
 }
 
 /// What each coordinate of a pose changes, translations first; as many as a pose has, 3 in 2D.
@@ -217,10 +226,7 @@ impl<const N: usize> Contact<N> {
         let [_, g1, g2] = self.quantity.constraint;
         let [first, second] = self.sides.each_ref().map(Side::reach);
         let gauge: [f64; 2] = core::array::from_fn(|c| g1 * first[c] + g2 * second[c]);
-        let reach = match written {
-            Mover::First => first,
-            Mover::Second => second,
-        };
+        let reach = written.of(first, second);
 
         let mut rates = Rates { value: [0.0; 6], constraint: [0.0; 6], whitened: [[0.0; 6]; 2] };
         for i in 0..N {
@@ -285,10 +291,7 @@ impl<const N: usize> Contact<N> {
 
     /// The body, its k, and the sign with which its translation shortens r.
     fn of(&self, mover: Mover) -> (&Side<N>, f64, f64) {
-        match mover {
-            Mover::First => (&self.sides[0], self.k[1], 1.0),
-            Mover::Second => (&self.sides[1], self.k[2], -1.0),
-        }
+        mover.of((&self.sides[0], self.k[1], 1.0), (&self.sides[1], self.k[2], -1.0))
     }
 }
 

@@ -1,8 +1,8 @@
-//! Gradients and Hessians by the motion of a body, about its own centre.
+//! Gradients by the motion of a body, about its own centre.
 
-use convex_support::{AngularVelocity, Ellipsoid, MotionGradient, MotionHessian, Scalar, Vector};
+use convex_support::{AngularVelocity, Ellipsoid, MotionGradient, Scalar, Vector};
 
-use super::contact::{Contact, Form, Mover, Units};
+use super::contact::{Contact, Mover, Units};
 use crate::numerics::{Vec, load, load_columns, store};
 
 /// The gradient of the value of a contact.
@@ -18,21 +18,6 @@ pub(super) fn gradient<V: Vector, const N: usize>(
         rotation: torque(body, e, factor * units.value),
         point: body.center(),
     }
-}
-
-/// The Hessian of a number that is a function of the value of a contact.
-pub(super) fn hessian<V: Vector, const N: usize>(contact: &Contact<N>, mover: Mover, form: Form) -> MotionHessian<V> {
-    MotionHessian::from_rows(contact.hessian(mover, form).map(|row| row.map(V::Scalar::from_f64)), true)
-}
-
-/// No change, where the quantity is at its floor.
-pub(super) fn no_gradient<V: Vector>(body: &Ellipsoid<V>) -> MotionGradient<V> {
-    MotionGradient::force(V::ZERO, body.center())
-}
-
-/// The same of second derivatives.
-pub(super) fn no_hessian<V: Vector>() -> MotionHessian<V> {
-    MotionHessian::from_rows([[V::Scalar::ZERO; 6]; 6], true)
 }
 
 /// `factor`·Σ uᵢuⱼ(aᵢ/aⱼ − aⱼ/aᵢ) eᵢ∧eⱼ over the planes i < j of the axes of `body`.

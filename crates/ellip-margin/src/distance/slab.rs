@@ -183,7 +183,7 @@ impl<const N: usize> Slab<N> {
         };
         let along = (0..N).fold(DoubleDouble::ZERO, |sum, i| sum + DoubleDouble::sum(pair.x2[i], -pair.x1[i]) * n[i]);
         let width = along - support(&pair.axes1, &pair.a1) - support(&pair.axes2, &pair.a2);
-        width.divided_by(product(n).sqrt().value()).value()
+        (width / product(n).sqrt().value().into()).value()
     }
 
     /// The bracket, given the [`exact_width`](Self::exact_width) and the unit of length of `pair`.

@@ -19,6 +19,15 @@ pub(crate) struct Svd<const N: usize> {
     pub(crate) v: [Vec<N>; N],
 }
 
+impl<const N: usize> Svd<N> {
+    /// ĉ = Vᵀc = Σ⁻¹Uᵀg of two vectors with g = Bc: each coordinate from the side with the smaller rounding error.
+    pub(crate) fn coordinates(&self, c: Vec<N>, g: Vec<N>) -> Vec<N> {
+        let Self { sigma, u, v } = self;
+        let (norm_c, norm_g) = (dot(c, c).sqrt(), dot(g, g).sqrt());
+        core::array::from_fn(|i| if norm_g < sigma[i] * norm_c { dot(u[i], g) / sigma[i] } else { dot(v[i], c) })
+    }
+}
+
 /// Jacobi's method converges quadratically; after the pivoted factorisation it needs three sweeps or so.
 const MAX_SWEEPS: usize = 30;
 

@@ -1,5 +1,6 @@
 //! A ray in the frame of a body.
 
+use convex_support::numerics::twofold::foot_from;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -69,30 +70,19 @@ pub(crate) struct LocalRay<V: Vector> {
 impl<V: Vector> LocalRay<V> {
     /// The ray relative to `origin`, in units of the power of two `scale`.
     ///
-    /// With `s` the source relative to the origin, the foot is `s + t·d` with `t = −s·d/d·d`: two large vectors nearly
-    /// cancel. The subtraction of the origin is corrected by its rounding error (Knuth's two-sum), and `t·d + s` is
-    /// rounded once, by a fused multiply-add; then the foot is right to rounding of its own length for this `t`. The
-    /// error of `t` itself only shifts the foot along the line, where it is undone by a second projection.
+    /// The foot of the line is right to rounding of its own length for the parameter that it is [found](foot_from) at.
+    /// The error of that only shifts the foot along the line, where it is undone by a second projection.
     #[inline(always)]
     pub(crate) fn new(ray: Ray<V>, origin: V, scale: V::Scalar) -> Self {
         let down = reciprocal_of_power(scale);
-        let (from, to) = (ray.source * down, origin * down);
-        let s = from - to;
         // The ray's own direction, brought near unit length, is exact, unlike its unit vector.
         let near_one = power_of_two_near(ray.direction.abs().max_element());
         let to_near_one = reciprocal_of_power(near_one);
         let exact = ray.direction * to_near_one;
-        let squared = exact.length_squared();
-        let length = squared.sqrt();
+        let length = exact.length();
         let per_length = length.recip();
         let direction = exact * per_length;
-        let t = -s.dot(exact) / squared;
-        let foot = V::from_fn(|i| {
-            let (a, b, sum) = (from.get(i), -to.get(i), s.get(i));
-            let b_seen = sum - a;
-            let lost = (a - (sum - b_seen)) + (b - b_seen);
-            t.mul_add(exact.get(i), sum) + lost
-        });
+        let (t, foot) = foot_from(origin * down, ray.source * down, exact);
         let rest = foot.dot(direction);
         let foot = foot - direction * rest;
         Self { line: Line { foot, direction }, start: -(t * length - rest), per_unit: scale * per_length * to_near_one }

@@ -229,8 +229,7 @@ fn entry<V: Vector>(
 ) -> LatestEntry<V::Scalar> {
     let (zero, number) = (V::Scalar::ZERO, V::Scalar::from_f64);
     let from = from_contact(near, astray);
-    let [core_a, core_b] = [a.core(), b.core()];
-    let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
+    let size = a.core().size() + b.core().size();
     let gap = from.length;
     // Bodies that touch have their origins no farther apart than their sizes.
     let past = (size + size + gap) / direction.norm();

@@ -4,7 +4,7 @@ use convex_support::Scalar;
 use smallvec::SmallVec;
 
 use super::outline::{ContactPart, Corner, Outline};
-use crate::symmetric::{Across, cross, dot, way};
+use crate::symmetric::{Across, cross, dot, scaled, sum, way};
 
 /// A corner of the overlap, and what it is of the outline that was clipped and of the other.
 #[derive(Clone, Copy, Debug)]
@@ -95,8 +95,7 @@ fn cut<S: Scalar>(
             kept.push(*from);
         }
         if is_crossed {
-            let share = d / (d - e);
-            let at = (from.at.0 + (to.at.0 - from.at.0) * share, from.at.1 + (to.at.1 - from.at.1) * share);
+            let at = sum(from.at, scaled(way(from.at, to.at), d / (d - e)));
             let parts = match from.edge {
                 Edge::Own(p, q) => [ContactPart::Edge(p, q), along],
                 Edge::Other(before) => [ContactPart::Face, ContactPart::Vertex(shared_corner(before, index, other))],

@@ -101,7 +101,7 @@ fn between<V: Vector>(
     let origin = answer.point_a * half + answer.point_b * half;
     let across = axes_across(normal);
     let (core_a, core_b) = (a.parts(), b.parts());
-    let size = (core_a.extent + core_a.radius).min(core_b.extent + core_b.radius);
+    let size = core_a.size().min(core_b.size());
     let reach = Reach::new(answer, within, size);
     let level = answer.signed_distance * -half;
     // The closest points are one beside the other by as much as is not known of the normal.
@@ -121,7 +121,7 @@ compiled_once! {
         let across = axes_across(normal);
         let plane = |normal| ContactPlane { normal, across, origin };
         let core = shape.parts();
-        let reach = Reach::new(answer, within, core.extent + core.radius);
+        let reach = Reach::new(answer, within, core.size());
         let sides =
             [Side::new(shape, &core, plane(-normal), [-answer.signed_distance, -answer.lower]), Side::flat(plane(normal))];
         let levels = [-answer.signed_distance, V::Scalar::ZERO];

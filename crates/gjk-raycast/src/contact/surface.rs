@@ -105,7 +105,7 @@ impl<'s, V: Vector> Side<'s, V> {
         [reach, top]: [V::Scalar; 2],
     ) -> Self {
         let from = core.origin - plane.origin;
-        let noise = (from.norm() + core.extent + core.radius) * (V::Scalar::EPSILON * V::Scalar::from_f64(16.0));
+        let noise = (from.norm() + core.size()) * (V::Scalar::EPSILON * V::Scalar::from_f64(16.0));
         let (radius, flat) = (core.radius, None);
         Self { surface: Some(surface), plane, from, radius, reach, top, flat, noise, ..Self::flat(plane) }
     }

@@ -86,7 +86,7 @@ impl<V: Vector> ClosestFeatures<V> {
     /// their digits, since the distance is stationary in them; Newton's method finds the rest.
     pub(super) fn new(shapes: [Shape<'_, V>; 2], closest: ClosestPoints<V>) -> Self {
         let cores = shapes.map(|shape| shape.core());
-        let size = cores.iter().fold(V::Scalar::ZERO, |sum, core| sum + core.extent + core.radius);
+        let size = cores.iter().fold(V::Scalar::ZERO, |sum, core| sum + core.size());
         let gap = closest.signed_distance + cores[0].radius + cores[1].radius;
         let bodies = Bodies { shapes, cores, unit: power_of_two_near(size + closest.signed_distance.abs()) };
         let tilt = tilt(size, gap, closest.error);

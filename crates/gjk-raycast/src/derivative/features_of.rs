@@ -95,7 +95,7 @@ compiled_once! {
     /// little as they are pushed, which gains `η²` over twice the stiffness.
     fn is_tied<V>(answer: &SignedDistance<V>, cores: [Core<V>; 2], a: Shape<'_, V>, b: Shape<'_, V>) -> bool {
         let [core_a, core_b] = cores;
-        let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
+        let size = core_a.size() + core_b.size();
         let push = little(size);
         let pushed = Core { origin: core_a.origin - answer.normal * push, ..core_a };
         let moved = Moved::new(a, pushed, None, Scalar::ZERO);
@@ -178,8 +178,7 @@ compiled_once! {
         let (a, b) = (at_time(a, time), at_time(b, time));
         let zero = V::Scalar::ZERO;
         // They are as far apart as the target distance of the cast, which the hit does not know, or not at all.
-        let (core_a, core_b) = (a.core(), b.core());
-        let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
+        let size = a.core().size() + b.core().size();
         let gap = normal.dot(a.support(-normal) - b.support(normal));
         // What is not on purpose is what the time or the normal are wrong by.
         let [apart, error] = if gap > little(size) { [gap, zero] } else { [zero, gap.abs()] };

@@ -7,7 +7,7 @@ use super::closest_features::{Bodies, ClosestFeatures, ClosestPoints};
 use super::span::Span;
 use crate::contact::{ContactPlane, Outline};
 use crate::shape::Shape;
-use crate::symmetric::{Across, Symmetric, axes_across, dot};
+use crate::symmetric::{Across, Symmetric, axes_across, dot, turned_left};
 use crate::unit::reciprocal_of_power;
 
 /// How far a direction is turned to see which curve an edge between two of them belongs to, and where a support point
@@ -114,8 +114,7 @@ fn hessian<V: Vector>(
     let per_unit = reciprocal_of_power(from.unit);
     let along = |direction| {
         let entries = body.core_support_hessian(direction, from.plane.across);
-        let [a, b, d] = entries.map(|entry| entry * per_unit);
-        Symmetric { a, b, d }.plus(core.radius * per_unit)
+        Symmetric::of(entries.map(|entry| entry * per_unit)).plus(core.radius * per_unit)
     };
     let hessian = match Span::of(outline) {
         Span::Vertex => along(direction),
@@ -146,13 +145,13 @@ fn share<S: Scalar>(outline: &Outline<S>, e: Across<S>) -> S {
 
 /// What of a Hessian is across a unit vector. Along the edge itself a support point is free.
 fn across_edge<S: Scalar>(hessian: Symmetric<S>, e: Across<S>) -> Symmetric<S> {
-    let (f, bend) = ((-e.1, e.0), bend(hessian, e));
+    let (f, bend) = (turned_left(e), bend(hessian, e));
     Symmetric { a: bend * f.0 * f.0, b: bend * f.0 * f.1, d: bend * f.1 * f.1 }
 }
 
 /// How much of a Hessian is across a unit vector.
 fn bend<S: Scalar>(hessian: Symmetric<S>, e: Across<S>) -> S {
-    let f = (-e.1, e.0);
+    let f = turned_left(e);
     dot(f, hessian.times(f))
 }
 

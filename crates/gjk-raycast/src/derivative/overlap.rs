@@ -9,7 +9,7 @@ use convex_support::numerics::elementary::hypot;
 use smallvec::SmallVec;
 
 use crate::contact::{Corner, Ellipse, Outline};
-use crate::symmetric::{Across, cross, dot};
+use crate::symmetric::{Across, cross, direction, dot, scaled, sum, way};
 
 /// The most tangents along which discs are cut. Each halves the angle in which the least value lies, so that its error
 /// falls to a quarter.
@@ -33,12 +33,12 @@ impl<S: Scalar> Overlap<S> {
         let sides = around(other);
         if let [from, to] = sides[..] {
             let e = direction(from, to);
-            overlap.cut(|at| dot(difference(at, from), e));
-            overlap.cut(|at| dot(difference(to, at), e));
+            overlap.cut(|at| dot(way(from, at), e));
+            overlap.cut(|at| dot(way(at, to), e));
         } else {
             for (i, &from) in sides.iter().enumerate() {
                 let e = direction(from, sides[(i + 1) % sides.len()]);
-                overlap.cut(|at| cross(e, difference(at, from)));
+                overlap.cut(|at| cross(e, way(from, at)));
             }
         }
         overlap
@@ -80,8 +80,7 @@ impl<S: Scalar> Overlap<S> {
                 self.corners.push(from);
             }
             if d.min(e) < -self.slack && d.max(e) > self.slack {
-                let (share, way) = (d / (d - e), difference(to, from));
-                self.corners.push((from.0 + way.0 * share, from.1 + way.1 * share));
+                self.corners.push(sum(from, scaled(way(from, to), d / (d - e))));
             }
         }
     }
@@ -152,21 +151,10 @@ fn around<S: Scalar>(outline: &Outline<S>) -> SmallVec<[Across<S>; 32]> {
 
 /// The coordinates of a point in which an ellipse is the unit circle.
 fn of_circle<S: Scalar>(&Ellipse { center, radii: [p, q] }: &Ellipse<S>, at: Across<S>) -> Across<S> {
-    let (from, area) = (difference(at, center), cross(p, q));
+    let (from, area) = (way(center, at), cross(p, q));
     (cross(from, q) / area, cross(p, from) / area)
 }
 
 fn mean_radius<S: Scalar>(rim: &Ellipse<S>) -> S {
     cross(rim.radii[0], rim.radii[1]).abs().sqrt()
-}
-
-fn difference<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
-    (a.0 - b.0, a.1 - b.1)
-}
-
-/// The unit vector from a point to another.
-pub(super) fn direction<S: Scalar>(from: Across<S>, to: Across<S>) -> Across<S> {
-    let e = difference(to, from);
-    let per = dot(e, e).sqrt().recip();
-    (e.0 * per, e.1 * per)
 }

@@ -1,6 +1,5 @@
 //! Whether an answer changes smoothly, and its one-sided derivatives if it does not.
 
-use convex_support::numerics::elementary::hypot;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -8,7 +7,7 @@ use super::ClosestFeatures;
 use super::gradient::start_of;
 use super::overlap::{Overlap, separating};
 use super::span::{DifferenceSpan, Span};
-use crate::symmetric::{Across, Symmetric, dot};
+use crate::symmetric::{Across, dot, turned_left};
 use crate::{RigidMotion, Trajectory};
 
 /// Whether an answer is differentiable by the poses of both bodies.
@@ -67,10 +66,10 @@ impl<V: Vector> ClosestFeatures<V> {
         // In which directions the normal could turn without leaving an edge or a face of either body.
         let is_held = match (self.joint(), self.spans) {
             (Some(DifferenceSpan::None), _) if V::DIM == 2 => stiffness.a > least,
-            (Some(DifferenceSpan::None), _) => least_eigenvalue(stiffness) > least,
+            (Some(DifferenceSpan::None), _) => stiffness.least_eigenvalue() > least,
             // Across an edge, or parallel ones.
             (Some(DifferenceSpan::Edge(_, e)), _) | (None, [Span::Edge(e), Span::Edge(_)]) => {
-                V::DIM == 2 || is_stiff((-e.1, e.0))
+                V::DIM == 2 || is_stiff(turned_left(e))
             }
             _ => true,
         };
@@ -160,13 +159,4 @@ impl<V: Vector> ClosestFeatures<V> {
         let overlap = Overlap::of(&self.outlines, self.slack());
         overlap.least(|at| value(place(at))).unwrap_or_else(|| value(self.middle))
     }
-}
-
-/// The least eigenvalue, without a sum of squares.
-fn least_eigenvalue<S: Scalar>(matrix: Symmetric<S>) -> S {
-    let half = S::from_f64(0.5);
-    let (mean, difference) = ((matrix.a + matrix.d) * half, (matrix.a - matrix.d) * half);
-    let greatest = mean + hypot(difference, matrix.b);
-    // The product of both is the determinant.
-    if greatest > S::ZERO { matrix.determinant() / greatest } else { mean - hypot(difference, matrix.b) }
 }

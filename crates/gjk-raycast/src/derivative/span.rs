@@ -2,9 +2,8 @@
 
 use convex_support::Scalar;
 
-use super::overlap::direction;
 use crate::contact::Outline;
-use crate::symmetric::{Across, cross};
+use crate::symmetric::{Across, cross, direction, scaled, sum};
 
 /// The directions in the plane across a normal in which a body's supporting feature extends: those of a vertex, of an
 /// edge (a unit vector), or of a face. In 2D an edge is all there can be.
@@ -36,16 +35,13 @@ impl<S: Scalar> Span<S> {
     /// The turn of the normal that makes it exactly across the feature, where that is an edge or a face.
     pub(super) fn turn(self, outline: &Outline<S>) -> Across<S> {
         let zero = (S::ZERO, S::ZERO);
-        let slope = |(x, y): Across<S>| {
+        let slope = |e: Across<S>| {
             let first = outline.corners[0].at;
-            outline.height((first.0 + x, first.1 + y)) - outline.height(first)
+            outline.height(sum(first, e)) - outline.height(first)
         };
         match self {
             Self::Vertex => zero,
-            Self::Edge(e) => {
-                let slope = slope(e);
-                (-slope * e.0, -slope * e.1)
-            }
+            Self::Edge(e) => scaled(e, -slope(e)),
             Self::Face => (-slope((S::ONE, S::ZERO)), -slope((S::ZERO, S::ONE))),
         }
     }

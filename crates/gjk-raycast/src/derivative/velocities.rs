@@ -23,7 +23,7 @@ use num_traits::Float as _;
 
 use super::ClosestFeatures;
 use super::span::DifferenceSpan;
-use crate::symmetric::{Across, Symmetric, cross, dot};
+use crate::symmetric::{Across, Symmetric, cross, dot, scaled, sum, turned_left, way};
 use crate::unit::reciprocal_of_power;
 use crate::{RigidMotion, Trajectory};
 
@@ -95,7 +95,7 @@ impl<V: Vector> ClosestFeatures<V> {
         let solver = self.solver()?;
         let [a, b] = [0, 1].map(|i| self.outlines[i].corners[0]);
         let turns = [0, 1].map(|i| self.spans[i].turn(&self.outlines[i]));
-        let (change, [slide_a, slide_b]) = solver.solved((a.at.0 - b.at.0, a.at.1 - b.at.1), turns);
+        let (change, [slide_a, slide_b]) = solver.solved(way(b.at, a.at), turns);
         let place = |at, height: V::Scalar| self.middle + (self.out_of_plane(at) + self.normal * height) * self.unit;
         let point_a = place(sum(a.at, slide_a), a.height) - self.normal * radii[0];
         let point_b = place(sum(b.at, slide_b), b.height) + self.normal * radii[1];
@@ -107,7 +107,7 @@ impl<V: Vector> ClosestFeatures<V> {
     pub(super) fn off(&self) -> V::Scalar {
         // Where numbers are not finite there are no corners.
         let [Some(a), Some(b)] = [0, 1].map(|i| self.outlines[i].corners.first()) else { return V::Scalar::ZERO };
-        let r = (a.at.0 - b.at.0, a.at.1 - b.at.1);
+        let r = way(b.at, a.at);
         match self.joint() {
             Some(DifferenceSpan::None) => dot(r, r).sqrt(),
             Some(DifferenceSpan::Edge(_, e)) => cross(e, r).abs(),
@@ -169,10 +169,7 @@ impl<V: Vector> Solver<'_, V> {
     /// and `g = K·n′ − r`, the slide of `a` less that of `b` is `g`.
     fn solved(&self, r: Across<V::Scalar>, turns: [Across<V::Scalar>; 2]) -> Solved<V::Scalar> {
         let zero = (V::Scalar::ZERO, V::Scalar::ZERO);
-        let rest = |change| {
-            let k = self.stiffness.times(change);
-            (k.0 - r.0, k.1 - r.1)
-        };
+        let rest = |change| way(r, self.stiffness.times(change));
         match self.joint {
             DifferenceSpan::None => (self.soft(r), [zero; 2]),
             DifferenceSpan::Edge(side, e) => {
@@ -221,7 +218,7 @@ impl<V: Vector> Solver<'_, V> {
         if V::DIM == 2 {
             return along;
         }
-        let f = (-e.1, e.0);
+        let f = turned_left(e);
         let pulled = self.stiffness.times(f);
         let aside = (dot(f, r) - held * dot(e, pulled)) / dot(f, pulled);
         sum(along, scaled(f, aside))
@@ -235,14 +232,6 @@ type Solved<S> = (Across<S>, [Across<S>; 2]);
 fn slides<S: Scalar>(body: usize, g: Across<S>) -> [Across<S>; 2] {
     let zero = (S::ZERO, S::ZERO);
     if body == 0 { [g, zero] } else { [zero, negative(g)] }
-}
-
-fn scaled<S: Scalar>(x: Across<S>, factor: S) -> Across<S> {
-    (x.0 * factor, x.1 * factor)
-}
-
-fn sum<S: Scalar>(x: Across<S>, y: Across<S>) -> Across<S> {
-    (x.0 + y.0, x.1 + y.1)
 }
 
 fn negative<S: Scalar>(x: Across<S>) -> Across<S> {

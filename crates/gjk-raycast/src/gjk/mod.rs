@@ -3,9 +3,7 @@
 
 mod boxes;
 mod next_direction;
-mod order;
 mod progress;
-mod start;
 mod state;
 
 use convex_support::{Scalar, Vector};
@@ -13,12 +11,11 @@ use num_traits::Float as _;
 
 use crate::body::{CastBody as _, Pair, PointPair, Shapes, TracedSupport};
 use crate::observer::Observer;
-use crate::unit::{lost_to_underflow, power_of_two_near, reciprocal_of_power};
+use crate::unit::{lost_to_underflow, moderate, power_of_two_near, reciprocal_of_power};
 use crate::{Status, SubAlgorithm};
 pub(crate) use boxes::{BoxesMeet, boxes};
 use next_direction::NextDirection;
 pub(crate) use progress::Progress;
-pub(crate) use start::first_direction;
 pub(crate) use state::Gjk;
 
 /// Where the difference of two bodies is, and the unit it is measured in.
@@ -80,6 +77,27 @@ pub(crate) struct GjkOptions<V: Vector> {
     pub(crate) closest_points: bool,
     pub(crate) max_iterations: usize,
     pub(crate) sub_algorithm: SubAlgorithm,
+}
+
+impl<V: Vector> GjkOptions<V> {
+    /// All that can be known of the closest points, beginning with a direction.
+    #[inline(always)]
+    pub(crate) fn new(first: V, max_iterations: usize) -> Self {
+        Self {
+            first,
+            limit: V::Scalar::infinity(),
+            tolerance: V::Scalar::ZERO,
+            closest_points: true,
+            max_iterations,
+            sub_algorithm: SubAlgorithm::Regions,
+        }
+    }
+}
+
+/// The direction to look along first: an axis that somebody knows, or from one origin to the other.
+#[inline(always)]
+pub(crate) fn first_direction<V: Vector>(axis: Option<V>, offset: V) -> V {
+    axis.and_then(moderate).or_else(|| moderate(offset)).unwrap_or_else(|| Vector::axis(0))
 }
 
 /// How GJK ended.

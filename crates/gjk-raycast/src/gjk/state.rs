@@ -1,10 +1,11 @@
 //! What GJK knows after each step: a simplex with its point closest to zero, and the best plane.
 
+use convex_support::numerics::range::is_comfortable;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::{Direction, Frame, Progress};
-use crate::body::PointPair;
+use crate::body::{AnyPair, PointPair};
 use crate::simplex::{Closest, Face, MAX_POINTS, Simplex, nearest, nearest_face, project};
 use crate::{Iterate, SubAlgorithm};
 
@@ -55,6 +56,19 @@ impl<V: Vector> Gjk<V> {
             return false;
         }
         self.length <= frame.touching()
+    }
+
+    /// Begins at the closest points of the cores of a pair of the given size, where those are known in closed form:
+    /// whether the bodies meet there, to rounding. `None` where they are not known, and the state is as it was.
+    #[inline(always)]
+    pub(crate) fn begin_at_closest(
+        &mut self,
+        pair: &AnyPair<'_, V>,
+        frame: &Frame<V>,
+        size: V::Scalar,
+    ) -> Option<bool> {
+        let points = pair.closest_points(frame.offset * frame.scale, size)?;
+        Some(self.begin_at(points.a - points.b + frame.offset, points, frame))
     }
 
     /// The state at a face of the difference, of which `v` is the point closest to zero and is made of its corners with
@@ -237,8 +251,8 @@ impl<V: Vector> Gjk<V> {
 #[inline]
 pub(super) fn in_range<V: Vector>(v: V) -> Option<Direction<V>> {
     let squared = v.length_squared();
-    if squared >= V::Scalar::min_positive_value() / V::Scalar::EPSILON {
-        squared.is_finite().then(|| Direction { n: v, length: squared.sqrt() })
+    if is_comfortable(squared) {
+        Some(Direction { n: v, length: squared.sqrt() })
     } else if v == V::ZERO {
         Some(Direction { n: v, length: V::Scalar::ZERO })
     } else {

@@ -14,8 +14,8 @@ use super::result::{
 use super::{Among, Body};
 use crate::motion::{check, checked};
 use crate::{
-    ChainMotion, Impact, LinearCast, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCast, RayCastError,
-    RayCastOptions, RayHit, RigidMotion, Status, Trajectory,
+    Cast, ChainMotion, Impact, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastError, RayCastOptions, RayHit,
+    RigidMotion, Trajectory,
 };
 
 impl<S: SupportMap> Among<'_, S> {
@@ -29,7 +29,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: RayCastOptions<S::Vector>,
     ) -> Result<SceneRayCast<S::Vector>, RayCastError> {
         ray.check(&options)?;
-        self.first(&swept_point(ray), options.max_lambda, |body| Ok(body.ray_cast(ray, options)?.into()))
+        self.first(&swept_point(ray), options.max_lambda, |body| body.ray_cast(ray, options), |hit| hit.lambda)
     }
 
     /// Finds all bodies that the ray hits. Writes them into `hits`, which is emptied first, in the order of λ and then
@@ -44,8 +44,8 @@ impl<S: SupportMap> Among<'_, S> {
         hits: &mut Vec<BodyHit<RayHit<S::Vector>, ScalarOf<S>>>,
     ) -> Result<SceneHits, RayCastError> {
         ray.check(&options)?;
-        let ask = |body: &Body<S>| Ok(body.ray_cast(ray, options)?.into());
-        self.all_hits(&swept_point(ray), options.max_lambda, hits, |hit| hit.lambda, ask)
+        let ask = |body: &Body<S>| body.ray_cast(ray, options);
+        self.all_hits(&swept_point(ray), options.max_lambda, hits, ask, |hit| hit.lambda)
     }
 
     /// [`ray_cast`](Self::ray_cast) for each of many rays, on all threads of the current [rayon](https://docs.rs/rayon)
@@ -73,14 +73,14 @@ impl<S: SupportMap> Among<'_, S> {
         options: RayCastOptions<S::Vector>,
     ) -> Result<SceneAnyHit, RayCastError> {
         ray.check(&options)?;
-        let (mut hit, mut is_certain, mut undecided) = (false, false, None);
+        let (mut hit, mut is_certain, mut undecided) = (false, false, None::<usize>);
         let all = (options.max_lambda, usize::MAX);
         let work = self.in_order(&swept_point(ray), options.max_lambda, |index, _, body| {
             let cast = body.ray_cast(ray, options)?;
             hit |= cast.outcome.is_hit();
             is_certain = cast.outcome.is_hit() && cast.is_certain();
             if !cast.is_certain() {
-                undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
+                undecided = Some(undecided.unwrap_or(index).min(index));
             }
             Ok(if is_certain { ControlFlow::Break(()) } else { ControlFlow::Continue(all) })
         })?;
@@ -101,7 +101,7 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<SceneLinearCast<S::Vector>, RayCastError> {
         motion.check(&options)?;
         let swept = swept_shape(shape, motion, &options);
-        self.first(&swept, options.max_time, |body| Ok(body.linear_cast(shape, motion, options)?.into()))
+        self.first(&swept, options.max_time, |body| body.linear_cast(shape, motion, options), |hit| hit.time)
     }
 
     /// Finds all bodies that the moving shape meets: the hits of [`linear_cast`](crate::linear_cast) against each body,
@@ -133,8 +133,8 @@ impl<S: SupportMap> Among<'_, S> {
         hits: &mut Vec<BodyHit<Impact<S::Vector>, ScalarOf<S>>>,
     ) -> Result<SceneHits, RayCastError> {
         motion.check(&options)?;
-        let ask = |body: &Body<S>| Ok(body.linear_cast(shape, motion, options)?.into());
-        self.all_hits(&swept_shape(shape, motion, &options), options.max_time, hits, |hit| hit.time, ask)
+        let ask = |body: &Body<S>| body.linear_cast(shape, motion, options);
+        self.all_hits(&swept_shape(shape, motion, &options), options.max_time, hits, ask, |hit| hit.time)
     }
 
     /// The first body that a shape meets as it moves and turns among bodies at rest: the least time of
@@ -168,9 +168,8 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<SceneMotionCast<S::Vector>, RayCastError> {
         check("motion", &motion)?;
         let options = checked(options)?;
-        self.first(&MovingBalls::new(shape, &motion, &options), options.max_time, |body| {
-            Ok(body.motion_cast(shape, &motion, options, |_| {})?.into())
-        })
+        let balls = MovingBalls::new(shape, &motion, &options);
+        self.first(&balls, options.max_time, |body| body.motion_cast(shape, &motion, options, |_| {}), |hit| hit.time)
     }
 
     /// The first body that a shape meets as both move. All bodies share one rigid motion, such as loads on a vehicle or
@@ -208,9 +207,9 @@ impl<S: SupportMap> Among<'_, S> {
         check("of_bodies", &of_bodies)?;
         let options = checked(options)?;
         let seen = seen_from(of_bodies, motion);
-        self.first(&MovingBalls::new(shape, &ChainMotion::new(&seen), &options), options.max_time, |body| {
-            Ok(body.motion_cast_of_both(shape, motion, of_bodies, options)?.into())
-        })
+        let balls = MovingBalls::new(shape, &ChainMotion::new(&seen), &options);
+        let ask = |body: &Body<S>| body.motion_cast_of_both(shape, motion, of_bodies, options);
+        self.first(&balls, options.max_time, ask, |hit| hit.time)
     }
 
     /// All hits of bodies that `bound` does not leave out, in the order of their λ or time and then of their indices.
@@ -219,17 +218,17 @@ impl<S: SupportMap> Among<'_, S> {
         bound: &B,
         end: ScalarOf<S>,
         hits: &mut Vec<BodyHit<H, ScalarOf<S>>>,
+        ask: impl Fn(&Body<S>) -> Result<Cast<H, S::Vector>, RayCastError>,
         value: impl Fn(&H) -> ScalarOf<S>,
-        ask: impl Fn(&Body<S>) -> Result<SingleAnswer<H, ScalarOf<S>>, RayCastError>,
     ) -> Result<SceneHits, RayCastError> {
         let hits = reuse(hits);
-        let mut undecided = None;
+        let mut undecided = None::<usize>;
         let work = self.in_order(bound, end, |index, _, body| {
-            let single = ask(body)?;
-            if single.is_undecided {
-                undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
+            let cast = ask(body)?;
+            if cast.outcome.is_undecided() {
+                undecided = Some(undecided.unwrap_or(index).min(index));
             }
-            hits.extend(single.of(index));
+            hits.extend(hit_of(index, cast));
             Ok(ControlFlow::Continue((end, usize::MAX)))
         })?;
         hits.sort_unstable_by(|p, q| {
@@ -239,7 +238,8 @@ impl<S: SupportMap> Among<'_, S> {
         Ok(SceneHits { undecided, work })
     }
 
-    /// The first hit of all bodies that `bound` does not leave out; `ask` makes the single cast.
+    /// The first hit of all bodies that `bound` does not leave out; `ask` makes the single cast, and `value` is the λ or
+    /// the time of a hit.
     ///
     /// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, which is impossible if
     /// the hit's bracket is closed. Keys, and all that is kept here, are minima over bodies. A body that its box left
@@ -248,24 +248,25 @@ impl<S: SupportMap> Among<'_, S> {
         &self,
         bound: &B,
         end: ScalarOf<S>,
-        ask: impl Fn(&Body<S>) -> Result<SingleAnswer<H, ScalarOf<S>>, RayCastError>,
+        ask: impl Fn(&Body<S>) -> Result<Cast<H, S::Vector>, RayCastError>,
+        value: impl Fn(&H) -> ScalarOf<S>,
     ) -> Result<SceneCast<H, ScalarOf<S>>, RayCastError> {
         // The least key, with the hit; and where an undecided body may be hit at the earliest, and which.
         let (mut first, mut open) = (None::<(_, BodyHit<H, ScalarOf<S>>)>, None);
         let mut lower = ScalarOf::<S>::infinity();
         let work = self.in_order(bound, end, |index, from, body| {
-            let single = ask(body)?;
-            let start = (Float::max(single.lower, from), index);
-            if single.is_undecided || single.hit.is_some() {
+            let cast = ask(body)?;
+            let start = (Float::max(cast.lower, from), index);
+            if !cast.outcome.is_miss() {
                 lower = Float::min(lower, start.0);
             }
-            if single.is_undecided && open.is_none_or(|open| start < open) {
+            if cast.outcome.is_undecided() && open.is_none_or(|open| start < open) {
                 open = Some(start);
             }
-            if let Some((value, _)) = single.hit {
-                let key = (Float::max(value, from), index);
+            if let Some(hit) = hit_of(index, cast) {
+                let key = (Float::max(value(&hit.hit), from), index);
                 if first.is_none_or(|(least, _)| key < least) {
-                    first = single.of(index).map(|hit| (key, hit));
+                    first = Some((key, hit));
                 }
             }
             Ok(ControlFlow::Continue(first.map_or((end, usize::MAX), |(key, _)| key)))
@@ -276,36 +277,10 @@ impl<S: SupportMap> Among<'_, S> {
     }
 }
 
-/// The answer of one cast: `H` is a hit, `S` its λ or time.
-struct SingleAnswer<H, S> {
-    /// The hit, with its λ or time.
-    hit: Option<(S, H)>,
-    is_undecided: bool,
-    lower: S,
-    upper: S,
-    status: Status,
-}
-
-impl<H, S: Scalar> SingleAnswer<H, S> {
-    /// The hit as that of a body.
-    fn of(self, body: usize) -> Option<BodyHit<H, S>> {
-        let Self { hit, lower, upper, status, .. } = self;
-        hit.map(|(_, hit)| BodyHit { body, hit, lower, upper, status })
-    }
-}
-
-impl<V: Vector> From<RayCast<V>> for SingleAnswer<RayHit<V>, V::Scalar> {
-    fn from(RayCast { outcome, lower, upper, status, .. }: RayCast<V>) -> Self {
-        let is_undecided = outcome.is_undecided();
-        Self { hit: outcome.hit().map(|hit| (hit.lambda, hit)), is_undecided, lower, upper, status }
-    }
-}
-
-impl<V: Vector> From<LinearCast<V>> for SingleAnswer<Impact<V>, V::Scalar> {
-    fn from(LinearCast { outcome, lower, upper, status, .. }: LinearCast<V>) -> Self {
-        let is_undecided = outcome.is_undecided();
-        Self { hit: outcome.hit().map(|hit| (hit.time, hit)), is_undecided, lower, upper, status }
-    }
+/// The hit of a cast as that of a body.
+fn hit_of<H, V: Vector>(body: usize, cast: Cast<H, V>) -> Option<BodyHit<H, V::Scalar>> {
+    let Cast { outcome, lower, upper, status, .. } = cast;
+    Some(BodyHit { body, hit: outcome.hit()?, lower, upper, status })
 }
 
 /// A ray, with room for the rounding of its points: 32 ε of the source.
@@ -314,24 +289,18 @@ fn swept_point<V: Vector>(ray: Ray<V>) -> SweptBox<V> {
     SweptBox::new(V::splat(room), ray.source, ray.direction)
 }
 
-/// The box of a shape that moves, in the frame of the bodies, with room for the target distance.
+/// The box of a shape that moves, in the frame of the bodies, with room for the target distance. If a number of the
+/// shape is not finite, no body is left out and every single query reports it.
 fn swept_shape<A: SupportMap + ?Sized>(
     shape: &A,
     motion: Motion<A::Vector>,
     options: &LinearCastOptions<A::Vector>,
 ) -> SweptBox<A::Vector> {
-    let around = outer_box_of_question(shape);
+    let around = outer_box(shape).unwrap_or_else(Aabb::everything);
     let room = A::Vector::splat(Float::max(options.target_distance, Scalar::ZERO));
     let around = Aabb { min: around.min - room, max: around.max + room };
     let (center, half) = (around.center(), around.half_extents());
     // The two are rounded.
     let room = (center.abs() + half) * (ScalarOf::<A>::from_f64(4.0) * ScalarOf::<A>::EPSILON);
     SweptBox::new(half + room, center, motion.velocity_a - motion.velocity_b)
-}
-
-/// The box of the shape in a question. If a number of the shape is not finite, it contains everything, so that no
-/// body is left out and every single query reports it.
-pub(super) fn outer_box_of_question<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
-    let all = S::Vector::splat(ScalarOf::<S>::max_value());
-    outer_box(shape).unwrap_or(Aabb { min: -all, max: all })
 }

@@ -29,7 +29,7 @@ impl<V: Vector> MovingBalls<V> {
         options: &MotionCastOptions<V>,
     ) -> Self {
         let core = shape.core();
-        let radius = core.extent + core.radius + options.target_distance;
+        let radius = core.size() + options.target_distance;
         let (ball, large) = (BoundingSphere { center: core.origin, radius }, radius * Scalar::from_f64(GROWTH));
         let part = |index: usize, count: usize| {
             let at = |index| match index {

@@ -4,10 +4,9 @@ use alloc::vec::Vec;
 use core::convert::Infallible;
 use core::ops::ControlFlow;
 
-use convex_support::{BoxDistance, Scalar, ScalarOf, SupportMap};
+use convex_support::{Aabb, BoxDistance, Scalar, ScalarOf, SupportMap, outer_box};
 use num_traits::Float;
 
-use super::cast::outer_box_of_question;
 use super::result::{BodyDistance, BodySignedDistance, SceneDistance, SceneSignedDistance, Work, reuse};
 use super::{Among, Body};
 use crate::{DistanceOptions, SignedDistanceOptions};
@@ -159,7 +158,7 @@ impl<S: SupportMap> Among<'_, S> {
     }
 }
 
-/// How far boxes are from that of a shape.
+/// How far boxes are from that of a shape; nowhere, of a shape of which a number is not finite.
 fn distance_of<A: SupportMap + ?Sized>(shape: &A) -> BoxDistance<A::Vector> {
-    BoxDistance::new(outer_box_of_question(shape))
+    BoxDistance::new(outer_box(shape).unwrap_or_else(Aabb::everything))
 }

@@ -82,7 +82,7 @@ impl<S: SupportMap> Scene<S> {
     fn reaches_beyond(&self, body: usize, point: S::Vector, normal: S::Vector) -> bool {
         let Some(body) = self.get(body).and_then(|body| body.convex()) else { return false };
         let core = body.core();
-        let rounding = (core.extent + core.radius) * convex_support::ScalarOf::<S>::EPSILON.sqrt();
+        let rounding = core.size() * convex_support::ScalarOf::<S>::EPSILON.sqrt();
         let Ok(at) = Point::new(point) else { return false };
         normal.dot(body.support(normal) - point) > rounding
             && signed_distance(&at, body, SignedDistanceOptions::default().with_limit(rounding)).signed_distance

@@ -11,8 +11,8 @@ use crate::SignedDistanceOptions;
 /// Newton's steps from one direction.
 const MAX_STEPS: usize = 12;
 
-/// Steps in a row that may find nothing lower: of two pieces that meet, one is predicted from farther away until it is
-/// seen again.
+/// The steps in a row that may find nothing lower: if two pieces meet, one is predicted from farther away until it is
+/// found again.
 const PATIENCE: usize = 2;
 
 /// Newton's method from a direction to the bottom of its basin, on one smooth piece of the boundary or along the fold
@@ -43,7 +43,7 @@ pub(super) fn descend<V: Vector>(
         let Some(u) = u.filter(|_| cores.iterations < options.max_iterations && failures < PATIENCE) else { break };
         let next = WayOut::new(cores.support(u)?);
         let piece = Piece::new(cores, &next.vertex);
-        // As high to rounding, the bottom shows by the slope: it is known to twice as many digits as by the height.
+        // At equal heights to rounding, the slope shows the bottom: it has twice as many accurate digits as the height.
         let is_level = (next.h - way.h).abs() <= cores.error_along(u);
         let is_lower =
             if is_level { next.rest().length_squared() < way.rest().length_squared() } else { next.h < way.h };

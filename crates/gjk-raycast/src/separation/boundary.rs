@@ -17,18 +17,18 @@ use crate::simplex::{MAX_POINTS, nearest_face};
 /// Corners of a facet, of which a polygon's has two and a polyhedron's three.
 const MAX_CORNERS: usize = MAX_POINTS - 1;
 
-/// What the rounding of a normal is, in ε, where the edges it is made of are across one another.
+/// The rounding of a normal, in ε, if its edges are across one another.
 const TILT: f64 = 8.0;
 
-/// The sine of the angle between two edges below which the normal of a facet is computed with more care: at most this,
-/// and where distances need not be known to the last digit so many ε, in units of what they are to be known to.
+/// The sine of the angle between two edges below which the normal of a facet is computed with more care: at most
+/// this, and if distances need not be accurate to the last digit so many ε, in units of their accuracy.
 const ACUTE: f64 = 0.125;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Squares below this may have underflowed.
 const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
-/// Facets that are walked over to one that a point is beyond.
+/// The most facets of a walk to one that a point is beyond.
 const MAX_WALK: usize = 32;
 
 /// Facets that there is room for without an allocation; up to there it is made for so many more than there are.
@@ -51,21 +51,20 @@ pub(super) struct Facet<V: Vector> {
     pub(super) normal: V,
     /// How far, by the rounding of the normal, a point at unit distance may seem above or below the facet.
     tilt: V::Scalar,
-    /// Twice the number of the insertion that last looked at this facet, and one more if its point was beyond.
+    /// Twice the number of the insertion that last tested this facet, and one more if its point was beyond.
     looked: u32,
 }
 
 /// The convex hull of support points, by its vertices and facets.
-///
-/// A new point replaces the facets that it is beyond by those between it and their horizon. Since that is decided
-/// exactly, the facets bound a convex polytope at any time, however thin, and there is nothing to repair: a point in a
-/// facet's plane is not beyond it, and none of the new facets is without area.
+/// A new point replaces the facets that it is beyond by those between it and their horizon. Since this is decided
+/// exactly, the facets bound a convex polytope at any time, however thin, and nothing needs repair: a point in a
+/// facet's plane is not beyond it, and no new facet has an area of zero.
 ///
 /// # What it proves
-/// The facets are a closed surface by construction. Where zero is below all of them, each covers a part of the
-/// directions about zero, with one orientation, so that they cover them all; and so the ball about zero that is nowhere
-/// above them lies within the polytope. Any unit vector `n` proves of a facet with corners `p` that none of its points
-/// is nearer to zero than `min n·p`.
+/// The facets are a closed surface by construction. If zero is below all of them, each covers a part of the
+/// directions about zero, with one orientation, so that they cover them all; and so the ball about zero that is
+/// nowhere above them lies within the polytope. For any unit vector `n` and a facet with corners `p`, no point of the
+/// facet is nearer to zero than `min n·p`.
 #[derive(Debug)]
 pub(super) struct Boundary<V: Vector> {
     points: SmallVec<[V; 64]>,
@@ -96,7 +95,7 @@ type Origin<V> = (V, PointPair<V>);
 #[derive(Clone, Copy, Debug)]
 struct Fresh {
     ridge: [u16; MAX_CORNERS - 1],
-    /// The facet beyond the horizon, and the entry of its `across` that is to lead here.
+    /// The facet beyond the horizon, and the entry of its `across` that will lead here.
     outer: u16,
     back: u8,
     /// In 2D, whether the new vertex is the second corner.
@@ -161,7 +160,7 @@ impl<V: Vector> Boundary<V> {
         }
     }
 
-    /// Begins with the simplex of `DIM + 1` points. `false`, and there is none, where it is no thicker than the given
+    /// Begins with the simplex of `DIM + 1` points. `false`, with no polytope, if it is no thicker than the given
     /// length, or has no volume.
     pub(super) fn begin(&mut self, points: &[Vertex<V>], thickness: V::Scalar) -> bool {
         // Facet k is the one without vertex k, seen from outside where the last point is behind the last facet.
@@ -199,7 +198,7 @@ impl<V: Vector> Boundary<V> {
         true
     }
 
-    /// No polytope again.
+    /// Empties the polytope.
     #[cold]
     fn clear(&mut self) {
         self.points.clear();
@@ -216,13 +215,12 @@ impl<V: Vector> Boundary<V> {
         self.ridges.push([NONE; 2]);
     }
 
-    /// The facet that comes nearest to zero by its plane, or that zero is farthest beyond, and that bound.
+    /// The facet whose plane comes nearest to zero, or that zero is farthest beyond, and its bound.
     #[inline]
     pub(super) fn nearest(&self) -> (usize, V::Scalar) {
         let inner = self.inner.as_slice();
         let infinity = V::Scalar::infinity();
-        // In four lanes, which the compiler makes one instruction of; which of the facets it is is looked for
-        // afterwards.
+        // In four lanes, which the compiler turns into one instruction; the index of the facet is found afterwards.
         let mut lanes = [infinity; 4];
         let (fours, rest) = inner.as_chunks::<4>();
         for four in fours {
@@ -268,13 +266,13 @@ impl<V: Vector> Boundary<V> {
         usize::from(self.facets[index].across[corner])
     }
 
-    /// The facet that the ray from zero along a unit vector leaves through, where zero is within; the `nearest` facet
-    /// is tried first.
+    /// The facet that the ray from zero along a unit vector leaves through, if zero is within; the `nearest` facet is
+    /// tried first.
     pub(super) fn pierced(&self, u: V, nearest: usize) -> usize {
         if self.facets[nearest].normal == u || !(self.inner[nearest] > V::Scalar::ZERO) {
             return nearest;
         }
-        // The facet whose plane is pierced first. Of those that are no more the inverse of the distance is zero.
+        // The facet whose plane is pierced first. For removed facets the inverse of the distance is zero.
         let inverse = |i: usize| self.facets[i].normal.dot(u) / self.inner[i];
         let most = (0..self.facets.len()).fold((nearest, inverse(nearest)), |most, i| {
             let inverse = inverse(i);
@@ -283,12 +281,12 @@ impl<V: Vector> Boundary<V> {
         most.0
     }
 
-    /// The least distance of zero from the planes of all facets, where each is less than computed by what `error` says
-    /// of its normal, and that is never more than `most`.
+    /// The least distance of zero from the planes of all facets, each reduced by the `error` along its normal, which is
+    /// never more than `most`.
     pub(super) fn certain_inner(&self, error: impl Fn(V) -> V::Scalar, most: V::Scalar) -> V::Scalar {
         let mut least = V::Scalar::infinity();
         for (facet, &inner) in self.facets.iter().zip(&self.inner) {
-            // Others are farther whatever their error is. NaN is looked at.
+            // Others are farther whatever their error is. NaN is tested.
             if !(inner - most >= least) {
                 least = least.min(inner - error(facet.normal));
             }
@@ -296,9 +294,8 @@ impl<V: Vector> Boundary<V> {
         least
     }
 
-    /// Takes a facet for what it is and not for its plane, of which rounding leaves too little where it is a sliver:
-    /// the direction of its point nearest to zero bounds its distance as well. Whether that is more than what was
-    /// known.
+    /// Bounds the distance of a facet without its plane, of which rounding leaves too little if it is a sliver: the
+    /// direction of its point nearest to zero bounds its distance as well. Whether this bound is better than before.
     pub(super) fn measure(&mut self, index: usize) -> bool {
         let corners = self.corner_points(index);
         let corners = &corners[..V::DIM];
@@ -349,8 +346,8 @@ impl<V: Vector> Boundary<V> {
         (0..facets.len()).find(|&i| inner[i].is_finite() && is_seen(&facets[i], points, point))
     }
 
-    /// Adds a point beyond the given facet. `false`, and nothing is changed, where it is not beyond it, or there are
-    /// too many.
+    /// Adds a point beyond the given facet. `false`, and nothing is changed, if it is not beyond it, or there are too
+    /// many.
     pub(super) fn insert(&mut self, facet: usize, vertex: &Vertex<V>) -> bool {
         let is_full = self.points.len() >= usize::from(NONE / 4);
         if is_full || !is_seen(&self.facets[facet], &self.points, vertex.point) {
@@ -360,10 +357,10 @@ impl<V: Vector> Boundary<V> {
         self.replace(vertex, seen, count)
     }
 
-    /// Finds the facets that a point is beyond, beginning with one, and those that are to be between it and their
-    /// horizon; how many there are of both.
+    /// Finds the facets that a point is beyond, beginning with one, and the future ones between it and their horizon;
+    /// returns the numbers of both.
     fn look(&mut self, facet: usize, point: V) -> (usize, usize) {
-        // There is room for all, so that none need be made in between: a horizon has at most two ridges more than
+        // There is room for all, so that no allocation is needed in between: a horizon has at most two ridges more than
         // facets before it.
         let room = self.facets.len() + 2;
         if self.seen.len() < room {
@@ -405,9 +402,9 @@ impl<V: Vector> Boundary<V> {
         (count, ridges)
     }
 
-    /// Puts the fresh facets in the places of those that were `seen`, and more where there are not enough, around the
-    /// new vertex. `false`, and nothing is changed, where the horizon is not one cycle, to which only numbers that
-    /// underflow can lead.
+    /// Puts the new facets in the places of those that were `seen`, and more if there are not enough, around the new
+    /// vertex. `false`, and nothing is changed, if the horizon is not one cycle, which only numbers that underflow can
+    /// cause.
     fn replace(&mut self, vertex: &Vertex<V>, seen: usize, count: usize) -> bool {
         if !self.is_cycle(count) {
             return false;
@@ -443,7 +440,7 @@ impl<V: Vector> Boundary<V> {
         true
     }
 
-    /// Finds which of the fresh facets begin and end at each vertex of the horizon, along it; whether that is one each.
+    /// Finds which of the new facets begin and end at each vertex of the horizon; whether that is one each.
     fn is_cycle(&mut self, count: usize) -> bool {
         let (fresh, ridges) = (&self.fresh[..count], self.ridges.as_mut_slice());
         if V::DIM == 2 {
@@ -453,7 +450,7 @@ impl<V: Vector> Boundary<V> {
             ridges[usize::from(new.ridge[0])][0] = k as u16;
             ridges[usize::from(new.ridge[1])][1] = k as u16;
         }
-        // Where two began at one vertex, the first of them is not what is noted there.
+        // If two began at one vertex, the first of them is not the one recorded there.
         fresh.iter().enumerate().all(|(k, new)| {
             let (from, to) = (usize::from(new.ridge[0]), usize::from(new.ridge[1]));
             let next = fresh.get(usize::from(ridges[to][0]));
@@ -464,7 +461,7 @@ impl<V: Vector> Boundary<V> {
     }
 }
 
-/// Whether a point is beyond a facet: by its plane where rounding leaves no doubt, else exactly.
+/// Whether a point is beyond a facet: by its plane if rounding leaves no doubt, otherwise exactly.
 #[inline]
 fn is_seen<V: Vector>(facet: &Facet<V>, points: &[V], point: V) -> bool {
     let from = point - points[usize::from(facet.corners[0])];
@@ -480,12 +477,12 @@ fn is_exactly_beyond<V: Vector>(facet: &Facet<V>, points: &[V], point: V) -> boo
 }
 
 impl<V: Vector> Facet<V> {
-    /// A facet with its normal, and how far its plane is from zero, as far as its corners are behind it.
+    /// A facet with its normal, and the distance of its plane from zero, as far as its corners are behind it.
     #[inline(always)]
     fn new(points: &[V], corners: [u16; MAX_CORNERS], across: [u16; MAX_CORNERS], acute: f64) -> (Self, V::Scalar) {
         let at: [V; MAX_CORNERS] = core::array::from_fn(|i| points[usize::from(corners[i.min(V::DIM - 1)])]);
-        // Of a facet that is nearly without area no more is known than that its corners are near to one another, or to
-        // a line: the direction of one of them bounds its distance well enough, and tells nothing of what is beyond.
+        // If a facet is nearly without area, its corners are near to one another, or to a line: the direction of one of
+        // them bounds its distance well enough, and says nothing about points beyond.
         let (normal, tilt) = if V::DIM == 2 { edge_normal([at[0], at[1]]) } else { triangle_normal(at, acute) }
             .unwrap_or_else(|| (at[0].unit().unwrap_or_else(|| V::axis(0)), V::Scalar::infinity()));
         let least = |a: V::Scalar, b: V::Scalar| if b < a { b } else { a };
@@ -499,18 +496,18 @@ impl<V: Vector> Facet<V> {
     }
 }
 
-/// The unit normal of an edge, to the right of it, and what its rounding is for a point at unit distance.
+/// The unit normal of an edge, to the right of it, and its rounding for a point at unit distance.
 fn edge_normal<V: Vector>([a, b]: [V; 2]) -> Option<(V, V::Scalar)> {
     let edge = b - a;
     let turned = [edge.get(1), -edge.get(0)];
     Some((V::from_fn(|i| turned[i]).unit()?, V::Scalar::from_f64(TILT) * V::Scalar::EPSILON))
 }
 
-/// The unit normal of a triangle, counterclockwise as seen from where it points to, and what its rounding is for a
-/// point at unit distance: that is relative to the product of the lengths of two edges, which the mean of their squares
-/// is no less than. Double precision leaves none of it to `f32`.
+/// The unit normal of a triangle, counterclockwise as seen from where it points to, and its rounding for a point at
+/// unit distance: relative to the product of the lengths of two edges, which is at most the mean of their squares.
+/// Double precision leaves none of it to `f32`.
 ///
-/// Any two edges will do, unless they are nearly along one another: the square of the sine of their angle less than
+/// Any two edges are taken, unless they are nearly along one another: the square of the sine of their angle less than
 /// `acute`. To choose the best two takes a processor as long as all the rest.
 #[inline(always)]
 fn triangle_normal<V: Vector>([a, b, c]: [V; 3], acute: f64) -> Option<(V, V::Scalar)> {
@@ -525,7 +522,7 @@ fn triangle_normal<V: Vector>([a, b, c]: [V; 3], acute: f64) -> Option<(V, V::Sc
     }
 }
 
-/// The same by the two shortest edges, which leave least of the rounding.
+/// The same by the two shortest edges, which leave the least rounding.
 #[cold]
 #[inline(never)]
 fn careful_normal<V: Vector>([a, b, c]: [V; 3]) -> Option<(V, V::Scalar)> {

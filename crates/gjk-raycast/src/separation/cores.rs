@@ -1,4 +1,4 @@
-//! The difference of two cores: its support points, how well they are known, and how far GJK comes.
+//! The difference of two cores: its support points, their errors, and the result of GJK on it.
 
 use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, Rounding, Scalar, Vector};
@@ -15,7 +15,7 @@ use crate::simplex::MAX_POINTS;
 use crate::symmetric::Symmetric;
 use crate::unit::lost_to_underflow;
 
-/// What is lost of a point of the difference, in units of ε times the coordinates of the cores and of the offset of
+/// The rounding of a point of the difference, in units of ε times the coordinates of the cores and of the offset of
 /// their origins.
 ///
 /// A dot product with a unit vector counts in: its three products and two sums lose 1.5 of their magnitudes. The sums
@@ -23,17 +23,17 @@ use crate::unit::lost_to_underflow;
 const SUM: f64 = 2.6;
 const OFFSET: f64 = 2.1;
 
-/// Where the boundary is smooth, a way ends at the support point but for the square root of this part of its length.
+/// If the boundary is smooth, a way ends at the support point to within the square root of this part of its length.
 const SMOOTH: f64 = 1e-3;
 
 /// The cosine of the angle between a facet's normal and the way out, below which the normal leans towards the way.
 const NEAR_BY: f64 = 0.9;
 
-/// The part of the way from a facet's normal to the way out that is leaned, of facets with a corner where the way ends.
-/// With the whole of it, or with some of it at others, ellipsoids take more support points.
+/// The part of the way from a facet's normal to the way out by which the normal leans, for facets with a corner where
+/// the way ends. With the whole of it, or with some of it at others, ellipsoids take more support points.
 const LEAN: f64 = 0.8;
 
-/// A support point of the difference, and the points of both cores that it is made of.
+/// A support point of the difference, and its points of both cores.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex<V> {
     pub(crate) point: V,
@@ -66,7 +66,7 @@ impl<V: Vector> WayOut<V> {
         self.u() * self.h - self.vertex.point
     }
 
-    /// The unit normal of a facet with these corners, leaned towards the way where that ends at one of them and at a
+    /// The unit normal of a facet with these corners, leaned towards the way if that ends at one of them and at a
     /// smooth place.
     ///
     /// At a distance `x` from such a place, the ball of radius `h` about zero is `x²·(1/h − 1/R)/2` below the boundary
@@ -86,7 +86,7 @@ impl<V: Vector> WayOut<V> {
     }
 }
 
-/// The difference `K = K_A − K_B` of two cores as seen from zero, in units of a power of two near its size.
+/// The difference `K = K_A − K_B` of two cores relative to zero, in units of a power of two near its size.
 pub(crate) struct Cores<'a, V: Vector> {
     pub(super) pair: AnyPair<'a, V>,
     /// The radii of both bodies around their cores, in the world's unit.
@@ -94,29 +94,29 @@ pub(crate) struct Cores<'a, V: Vector> {
     frame: Frame<V>,
     /// The sizes of both cores, their radii and their offset, in the unit.
     pub(super) size: V::Scalar,
-    /// What taking the balls out of the cores loses.
+    /// The rounding of removing the balls from the cores.
     peeled_error: V::Scalar,
-    /// How far points of the difference may be from those they stand for, as a length, in the unit.
+    /// A bound on the error of points of the difference, as a length, in the unit.
     error: V::Scalar,
-    /// The same coordinate by coordinate; `None` as long as the length will do.
+    /// The same coordinate by coordinate; `None` as long as the length suffices.
     uncertainty: Option<Uncertainty<V>>,
-    /// What a look near contact tells of both bodies.
+    /// The second measurement of both bodies near contact.
     pub(super) near: Option<NearContact<V>>,
     /// The support points computed.
     pub(crate) iterations: usize,
 }
 
-/// How far the points of the difference may be from those they stand for, in the unit: what the shapes say of their
-/// own, and what is lost here, coordinate by coordinate.
+/// A bound on the error of points of the difference, in the unit: the errors that the shapes state, and the rounding
+/// here, coordinate by coordinate.
 pub(crate) struct Uncertainty<V: Vector> {
     shapes: [Rounding<V>; 2],
     lost: V,
-    /// The length of what is lost in the offset of their origins.
+    /// The length of the rounding of the offset of their origins.
     lost_in_offset: V::Scalar,
 }
 
 impl<V: Vector> Uncertainty<V> {
-    /// Of the sum of two points, each rounded to the shapes' extents, and the offset of their origins.
+    /// For the sum of two points, each rounded to the shapes' extents, and the offset of their origins.
     #[inline]
     fn new(shapes: [Rounding<V>; 2], offset: V, lost_in_offset: V) -> Self {
         let known = Self::of_exact_offset(shapes, offset);
@@ -125,7 +125,7 @@ impl<V: Vector> Uncertainty<V> {
         Self { lost: known.lost + lost_in_offset.abs(), lost_in_offset: length, ..known }
     }
 
-    /// The same where the offset is exact.
+    /// The same if the offset is exact.
     #[inline(always)]
     pub(crate) fn of_exact_offset(shapes: [Rounding<V>; 2], offset: V) -> Self {
         let epsilon: V::Scalar = Scalar::EPSILON;
@@ -147,17 +147,17 @@ impl<V: Vector> Uncertainty<V> {
         self.shapes.iter().fold(self.lost.norm(), |sum, shape| sum + shape.error_length)
     }
 
-    /// A bound on the length of what a point of the difference stands for, which is at `length` from zero and wrong by
-    /// `along` in its own direction.
+    /// A bound on the length of the exact point for a computed point of the difference, which is at `length` from zero
+    /// and wrong by `along` in its own direction.
     #[inline(always)]
     pub(crate) fn greatest_length(&self, length: V::Scalar, along: V::Scalar) -> V::Scalar {
         greatest_length(length + along, self.length())
     }
 }
 
-/// How far points of the difference of two cores of the given size may be from those they stand for, as a length, in
-/// the world's unit: no less than any [`Uncertainty`], since no sum of products of coordinates is more than the product
-/// of the lengths, and the offset of the origins loses half an ε of its own.
+/// A bound on the error of points of the difference of two cores of the given size, as a length, in the world's unit:
+/// no less than any [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths,
+/// and the offset of the origins loses half an ε of its own.
 #[inline(always)]
 pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
     pair: &Pair<'_, T>,
@@ -166,21 +166,21 @@ pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
     pair.error() + (size - pair.radius()) * (V::Scalar::EPSILON * Scalar::from_f64(SUM))
 }
 
-/// A bound on the length of what is as long as `length` along a direction and wrong by `error` across: of √(l² + e²),
-/// which l + e²/2l is no less than, nothing overflows.
+/// A bound on the length of a vector of the given `length` along a direction and an `error` across it: √(l² + e²) is
+/// at most l + e²/2l, and nothing overflows.
 #[inline(always)]
 fn greatest_length<S: Scalar>(length: S, error: S) -> S {
     if error < length { length + error * (error / length) } else { length + error }
 }
 
-/// What a signed distance in the world's unit loses: unit vectors are so to 2ε, and the sum of the radii and the two
-/// sums that the radii and the length go into round to half of that.
+/// The rounding of a signed distance in the world's unit: unit vectors are so to 2ε, and the sum of the radii and the
+/// two sums that the radii and the length go into round to half of that.
 #[inline(always)]
 pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
     S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
 }
 
-/// How deep cores are in one another, or minus how far they are apart, in closed form, in the unit.
+/// The depth of cores, or minus their distance, in closed form, in the unit.
 pub(super) struct ClosedForm<V: Vector> {
     /// The unit vector out of their difference.
     pub(super) u: V,
@@ -204,11 +204,11 @@ impl<'a, V: Vector> Cores<'a, V> {
         Self { pair, radii, frame, size, peeled_error: zero, error, uncertainty: None, near: None, iterations: 0 }
     }
 
-    /// Asks the shapes how well they know their points, coordinate by coordinate, which takes longer than many a
-    /// distance. Of a floor that lies flat it has nothing to do with its width.
+    /// Gets the errors of the shapes' points, coordinate by coordinate, which takes longer than many a distance. For a
+    /// horizontal floor they do not depend on its width.
     #[inline(never)]
     pub(crate) fn sharpen(&mut self) {
-        // Of numbers out of range nothing is known, whatever the shapes say.
+        // Nothing is known about numbers out of range, whatever the shapes state.
         if self.uncertainty.is_some() || !self.error.is_finite() {
             return;
         }
@@ -229,26 +229,25 @@ impl<'a, V: Vector> Cores<'a, V> {
         (length - self.frame.radius).abs() < self.frame.error * Scalar::from_f64(NEAR)
     }
 
-    /// The same of what a search has come to.
+    /// The same for the result of a search.
     pub(super) fn are_near(&self, state: &mut Gjk<V>) -> bool {
-        // Rounded bodies whose cores overlap are deep in one another.
+        // Rounded bodies whose cores overlap are in deep overlap.
         let is_full = state.simplex.points().len() > V::DIM;
         let are_deep = is_full && self.frame.radius > self.frame.error * Scalar::from_f64(NEAR);
         !are_deep && is_near_contact(state, &self.frame)
     }
 
-    /// Looks at bodies near contact once more, perhaps after a search. Whether there is no more to know than that
-    /// tells.
+    /// Measures bodies near contact once more, perhaps after a search. Whether this is final.
     pub(super) fn look_near(&mut self, wanted: &Wanted<V>, state: Option<&Gjk<V>>) -> bool {
         if wanted.of_overlap == OfOverlap::RoughDepth {
             return false;
         }
-        // A search that ended at the limit may have gone farther.
+        // A search that ended at the limit might have gone on.
         let limit = self.limit(wanted) + self.frame.error;
         let begun = state.filter(|state| wanted.is_plain() && !(state.lower > limit));
         let before = begun.map_or(0, |state| state.iterations);
         let left = before + wanted.options.max_iterations.saturating_sub(self.iterations);
-        // The cores may be without balls, which are in their radii then.
+        // The cores may have lost their rolling balls, which are in their radii then.
         let frame = Frame { radius: self.pair.radius() * self.frame.per_unit, ..self.frame };
         let size = self.size * self.frame.scale;
         let peeled = core::mem::take(&mut self.pair.peeled);
@@ -259,8 +258,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         if wanted.is_depth() { near.is_closed() } else { near.is_settled(left) }
     }
 
-    /// Whether the error at hand will do for cores that are so far apart: it is little beside that, and beside what is
-    /// left of it without the radii.
+    /// Whether the present error suffices for cores at this distance: it is small beside the distance, and beside the
+    /// distance without the radii.
     pub(super) fn is_well_apart(&self, length: V::Scalar) -> bool {
         let gap = (length - self.frame.radius).abs();
         length.min(gap) > self.greatest_error() * Scalar::from_f64(NEAR)
@@ -294,8 +293,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.pair.peeled != [Scalar::ZERO; 2]
     }
 
-    /// The radius of a ball about zero that is certain to be within the simplex with these corners, one more than there
-    /// are dimensions; not positive where zero may be outside.
+    /// The radius of a ball about zero that is certainly within the simplex with these corners, one more than there are
+    /// dimensions; not positive if zero may be outside.
     pub(crate) fn room_within(&self, corners: &[V]) -> V::Scalar {
         let mut points = [V::ZERO; MAX_POINTS];
         for (point, &corner) in points.iter_mut().zip(corners) {
@@ -304,7 +303,7 @@ impl<'a, V: Vector> Cores<'a, V> {
         room_around_zero(faces_of_simplex(&points), |_| self.greatest_error(), |_| Scalar::ONE)
     }
 
-    /// What lengths in the unit are to be multiplied by.
+    /// The factor from lengths in the unit to the world's.
     pub(crate) fn scale(&self) -> V::Scalar {
         self.frame.scale
     }
@@ -314,7 +313,7 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.radii[0] + self.radii[1]
     }
 
-    /// The support point along a direction; `None` where it is not finite.
+    /// The support point along a direction; `None` if it is not finite.
     #[inline]
     pub(crate) fn support(&mut self, direction: V) -> Option<Vertex<V>> {
         self.iterations += 1;
@@ -323,14 +322,14 @@ impl<'a, V: Vector> Cores<'a, V> {
         point.is_finite().then_some(Vertex { point, along: direction, pair })
     }
 
-    /// The plane by which GJK knows best how far the difference reaches beyond zero: how far at most, and the unit
-    /// vector across it into the difference.
+    /// GJK's best plane: an upper bound on how far the difference extends beyond zero, and the unit vector across it
+    /// into the difference.
     #[inline]
     pub(super) fn best_plane(&self, state: &Gjk<V>) -> Option<(V::Scalar, V)> {
         state.axis.unit().map(|n| (self.error_along(n) - state.lower, n))
     }
 
-    /// Whether the difference reaches beyond zero along a direction.
+    /// Whether the difference extends beyond zero along a direction.
     pub(super) fn reaches_beyond(&mut self, direction: V) -> bool {
         self.is_curved() && self.support(direction).is_some_and(|vertex| direction.dot(vertex.point) > Scalar::ZERO)
     }
@@ -345,8 +344,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.pair.is_curved()
     }
 
-    /// How far `n·p` may be from its true value, for a unit vector `n` and a point `p` of the difference; and by how
-    /// much a support point along `n` may fall short of the support value.
+    /// A bound on the error of `n·p`, for a unit vector `n` and a point `p` of the difference; and on how much a
+    /// support point along `n` falls short of the support value.
     #[inline]
     pub(crate) fn error_along(&self, n: V) -> V::Scalar {
         self.uncertainty.as_ref().map_or(self.error, |known| known.along(n)) + self.peeled_error

@@ -8,12 +8,12 @@ use crate::simplex::{MAX_POINTS, cross};
 /// Whether zero is in the simplex of some points, even if each is wrong by an error, which is at least `8ε` of the
 /// longest.
 ///
-/// It is where it has the same orientation with each face as the corner opposite. That is the sign of a determinant, of
-/// which an error `e` of each corner changes no more than `e·Σ(|q| + e)(|r| + e)` over the pairs of corners of the
-/// face; in the plane `e·Σ(|q| + e)`. As it is computed, it loses no more than as much again.
+/// It is if it has the same orientation with each face as the corner opposite. This is the sign of a determinant,
+/// which an error `e` of each corner changes by no more than `e·Σ(|q| + e)(|r| + e)` over the pairs of corners of the
+/// face; in the plane `e·Σ(|q| + e)`. Its computation loses no more than as much again.
 ///
-/// By how much is told by [`room_around_zero`](super::room_around_zero()), in more than twice the operations, which
-/// every query whose bodies overlap would pay.
+/// [`room_around_zero`](super::room_around_zero()) says by how much, in more than twice the operations, which every
+/// query whose bodies overlap would pay.
 pub(crate) fn is_around_zero<V: Vector>(points: &[V], error: V::Scalar) -> bool {
     let length = |p: V| p.length() + error;
     let twice = error * V::Scalar::from_f64(2.0);
@@ -42,10 +42,10 @@ pub(crate) fn is_around_zero<V: Vector>(points: &[V], error: V::Scalar) -> bool 
     sides.0.max(sides.1) == V::DIM + 1
 }
 
-/// Vectors across the faces that the points of a simplex span, as they follow from the points of both shapes: what is
-/// exact about their edges, as of boxes along the axes, stays so. A face has two sides; the one along `axis` comes
-/// first, and of a simplex of full dimension, with zero inside perhaps, both count. Where the simplex is an edge in
-/// space, the vector across it nearest to `axis`.
+/// Vectors across the faces of a simplex, as they follow from the points of both shapes: exact edges, as of boxes
+/// along the axes, stay exact. A face has two sides; the one along `axis` comes first, and for a simplex of full
+/// dimension, with zero inside perhaps, both count. If the simplex is an edge in space, the vector across it nearest
+/// to `axis`.
 pub(super) fn across_faces<V: Vector>(pairs: &[PointPair<V>], axis: V) -> impl Iterator<Item = V> {
     let edge = |from: PointPair<V>, to: PointPair<V>| (to.a - from.a) - (to.b - from.b);
     let mut across = [V::ZERO; MAX_POINTS];

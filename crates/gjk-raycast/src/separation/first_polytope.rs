@@ -8,7 +8,7 @@ use super::cores::{Cores, Vertex, WayOut};
 use crate::gjk::Gjk;
 use crate::simplex::{MAX_POINTS, cross};
 
-/// Where an expansion begins, with the best way out that was met on the way there.
+/// The start of an expansion, with the best way out found so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum FirstPolytope<V: Vector> {
     /// The boundary of a simplex.
@@ -17,10 +17,10 @@ pub(super) enum FirstPolytope<V: Vector> {
     Flat(WayOut<V>),
 }
 
-/// A simplex of support points, beginning with those that GJK ended with; `None` where a support point is not finite.
+/// A simplex of support points, beginning with those of GJK; `None` if a support point is not finite.
 ///
-/// Cores that are well in one another have led to a simplex that is thicker than rounding. As long as points span no
-/// volume, those farthest both ways across them are looked for, and the farther one is added.
+/// For cores in deep overlap GJK has led to a simplex that is thicker than rounding. As long as the points span no
+/// volume, those farthest both ways across them are computed, and the farther one is added.
 #[inline]
 pub(super) fn first_polytope<V: Vector>(
     cores: &mut Cores<'_, V>,
@@ -35,7 +35,7 @@ pub(super) fn first_polytope<V: Vector>(
         let along = if is_curved { along.unit().unwrap_or(along) } else { along };
         Vertex { point: state.simplex.points()[i], along, pair: state.simplex.witnesses()[i] }
     };
-    // The plane that GJK knows best is a way out; its support point may be left behind.
+    // GJK's best plane is a way out; its support point may be dropped.
     let mut best = state
         .axis
         .unit()
@@ -139,5 +139,5 @@ impl<V: Vector> AffineSpan<V> {
     }
 }
 
-/// So that no more points are asked for than there is room for.
+/// The number of points is no more than the room for them.
 const _: () = assert!(MAX_POINTS == 4, "a simplex of space has four points");

@@ -1,8 +1,8 @@
-//! Bodies no farther apart than a few errors: looked at once more, as closely as their numbers allow.
+//! The second measurement of bodies no farther apart than a few errors, as exact as their numbers allow.
 //!
-//! The errors that a query knows at hand are those of the largest number in it, though the gap of a box over a floor
-//! has nothing to do with how wide the floor is. Here the plane between the bodies is evaluated once more without
-//! rounding, and what the shapes say of theirs counts coordinate by coordinate, along the normal alone.
+//! The errors in a query are those of its largest number, though the gap of a box over a floor does not depend on the
+//! width of the floor. Here the plane between the bodies is evaluated once more without rounding, and the errors that
+//! the shapes state count coordinate by coordinate, along the normal alone.
 //!
 //! The search begins at the offset of the origins, whatever axis the query began at, and the [larger body comes
 //! first](super::order). So all queries about one pair decide alike.
@@ -20,10 +20,10 @@ use crate::observer::Observer;
 use crate::shape::Shape;
 use crate::simplex::MAX_POINTS;
 
-/// How many errors apart, or in one another, bodies are looked at once more.
+/// How many errors of distance or depth still count as near contact.
 pub(crate) const NEAR: f64 = 16.0;
 
-/// Whether bodies may be nearer to contact than a few errors, as a search has left them.
+/// Whether bodies may be nearer to contact than a few errors, after a search.
 #[inline(always)]
 pub(crate) fn is_near_contact<V: Vector>(state: &mut Gjk<V>, frame: &Frame<V>) -> bool {
     if state.simplex.points().len() > V::DIM {
@@ -34,23 +34,23 @@ pub(crate) fn is_near_contact<V: Vector>(state: &mut Gjk<V>, frame: &Frame<V>) -
     (state.length - frame.radius).abs() < frame.error * V::Scalar::from_f64(NEAR)
 }
 
-/// What is known of bodies near contact; lengths in units of the frame, from body to body.
+/// The result about bodies near contact; lengths in units of the frame, from body to body.
 #[derive(Clone, Copy)]
 pub(crate) struct NearContact<V: Vector> {
     pub(crate) frame: Frame<V>,
-    /// The points of the cores closest to one another, and how far apart they are as they are measured.
+    /// The closest points of the cores, and their measured distance.
     pub(crate) points: PointPair<V>,
     pub(crate) length: V::Scalar,
     pub(crate) end: End,
     pub(crate) iterations: usize,
-    /// The unit normal of the plane between the bodies, and how far apart they are along it, as it is measured.
+    /// The unit normal of the plane between the bodies, and their measured distance along it.
     pub(crate) normal: V,
     pub(crate) gap: V::Scalar,
-    /// The bodies are apart by this much, certainly; negative where that is not known.
+    /// The bodies are certainly apart by this much; negative if that is not known.
     pub(crate) lower: V::Scalar,
     /// Points of the bodies are no farther apart than this.
     pub(crate) upper: V::Scalar,
-    /// Whether the bodies have points in common for certain: a simplex of points of their difference has zero inside.
+    /// Whether the bodies certainly have points in common: a simplex of points of their difference has zero inside.
     /// Then no plane is between them, and `gap` and `lower` are infinitely deep.
     pub(crate) overlaps_certainly: bool,
 }
@@ -61,7 +61,7 @@ impl<V: Vector> NearContact<V> {
         self.lower > V::Scalar::ZERO
     }
 
-    /// Whether they have a point in common, to the error it is known to; `None` where neither can be told.
+    /// Whether they have a point in common, to its own error; `None` if neither is certain.
     pub(crate) fn overlap(&self) -> Option<bool> {
         if self.is_separated() {
             return Some(false);
@@ -71,30 +71,30 @@ impl<V: Vector> NearContact<V> {
         is_found.then_some(true)
     }
 
-    /// Whether a look behind it would tell no more: it is [closed](Self::is_closed), or the bodies have a point in
-    /// common far beyond any plane that was found, by a search that was not given up.
+    /// Whether a further search would find no more: it is [closed](Self::is_closed), or the bodies have a point in
+    /// common far beyond any plane that was found, by a search that did not give up.
     pub(crate) fn is_settled(&self, max_iterations: usize) -> bool {
         let is_over = self.overlaps_certainly || self.iterations < max_iterations;
         let is_deep = is_over && self.gap < -self.frame.error * V::Scalar::from_f64(NEAR);
         self.is_closed() || is_deep && self.length - self.frame.radius <= self.frame.error
     }
 
-    /// Whether the points are as near as the plane, to what the points are wrong by in any direction. Where it is not
-    /// known that the bodies are apart, to what they are wrong by along the normal: points may be known far less across
-    /// it, and another plane be beyond zero.
+    /// Whether the points are as near as the plane, to the error of the points in any direction. If it is not known
+    /// that the bodies are apart, to their error along the normal: points may be far less accurate across it, and
+    /// another plane may be beyond zero.
     pub(crate) fn is_closed(&self) -> bool {
         let error = if self.is_separated() { self.frame.error } else { self.gap - self.lower };
         self.upper - self.gap <= error + error
     }
 
-    /// The same, of the bodies in the other order.
+    /// The same for the bodies in the other order.
     fn reversed(self) -> Self {
         let frame = Frame { offset: -self.frame.offset, ..self.frame };
         Self { frame, points: self.points.reversed(), normal: -self.normal, ..self }
     }
 }
 
-/// Looks at two shapes near contact once more, whichever of them comes first.
+/// Measures two shapes near contact once more, in either order.
 #[cold]
 #[inline(never)]
 pub(crate) fn near_contact_of<V: Vector>(
@@ -111,11 +111,11 @@ pub(crate) fn near_contact_of<V: Vector>(
     Some(if shapes.is_swapped { near.reversed() } else { near })
 }
 
-/// Looks once more at bodies of the given size near contact that are [in order](Both::in_order); `None` where no plane
-/// can be found, or numbers are out of range.
+/// Measures bodies near contact once more, of the given size and [in order](Both::in_order); `None` if no plane can
+/// be found, or numbers are out of range.
 ///
-/// A search that is over may have begun where all do: without an axis of its own, and to no tolerance but the noise.
-/// Then what it came to is gone on with, and else it is made once more.
+/// An earlier search may have begun where all do: without an axis of its own, and with no tolerance but the noise.
+/// Then it is continued; otherwise it is repeated.
 #[cold]
 #[inline(never)]
 pub(crate) fn near_contact<V: Vector>(
@@ -128,7 +128,7 @@ pub(crate) fn near_contact<V: Vector>(
     if !frame.error.is_finite() {
         return None;
     }
-    // As of a query that begins here.
+    // Like a query that begins here.
     pair.forget_hints();
     let seen = Known::new(pair, frame);
     if begun.is_none()
@@ -151,9 +151,9 @@ pub(super) fn begin<V: Vector>(
     let first = first_direction(None, frame.offset);
     let mut state = Gjk::new(first);
     if state.begin_at_closest(pair, frame, size) != Some(false) {
-        // Where they meet, the vector from one to the other is no direction to look along.
+        // If they coincide, the vector between them is no direction.
         state = Gjk::new(first);
-        // Searches of its own, as of a query that begins here.
+        // Searches of its own, like a query that begins here.
         let mut pair = Pair::of_cores(pair.shapes, [pair.core_a, pair.core_b]);
         pair.set_scale(frame.scale);
         run(&mut state, &mut pair, *frame, first, max_iterations);
@@ -186,11 +186,11 @@ fn run<V: Vector>(
     gjk(state, pair, frame, GjkOptions::new(first, max_iterations), None, &mut Observer::none())
 }
 
-/// A plane that the difference of the cores lies beyond, across a unit vector.
+/// A plane with the difference of the cores beyond it, across a unit vector.
 #[derive(Clone, Copy)]
 struct SupportPlane<V: Vector> {
     n: V,
-    /// How far it is from zero, and what that is wrong by at most.
+    /// Its distance from zero, and a bound on the error of this.
     level: V::Scalar,
     error: V::Scalar,
 }
@@ -206,13 +206,13 @@ impl<V: Vector> SupportPlane<V> {
         self.certain() > radius
     }
 
-    /// Whether the plane is as far as points of the difference are, to what both are wrong by.
+    /// Whether the plane is as far as points of the difference are, to both errors.
     fn meets(&self, upper: V::Scalar) -> bool {
         upper <= self.level + self.error * V::Scalar::from_f64(2.0)
     }
 }
 
-/// Where a search has ended.
+/// The result of a search.
 struct Found<V: Vector> {
     end: End,
     iterations: usize,
@@ -221,7 +221,7 @@ struct Found<V: Vector> {
 }
 
 impl<V: Vector> Found<V> {
-    /// The answer by a plane, and a bound on how far from one another the closest points of the cores are.
+    /// The answer from a plane and a bound on the distance of the cores' closest points.
     fn near_contact(
         self,
         frame: &Frame<V>,
@@ -237,7 +237,7 @@ impl<V: Vector> Found<V> {
     }
 }
 
-/// The answer of a search that has ended at a simplex with zero inside for certain: no plane is between the bodies.
+/// The answer of a search that ended at a simplex that certainly has zero inside: no plane is between the bodies.
 fn overlapping<V: Vector>(state: &Gjk<V>, frame: &Frame<V>) -> NearContact<V> {
     let (zero, below) = (V::Scalar::ZERO, -V::Scalar::infinity());
     NearContact {
@@ -254,15 +254,15 @@ fn overlapping<V: Vector>(state: &Gjk<V>, frame: &Frame<V>) -> NearContact<V> {
     }
 }
 
-/// What positions are computed from, coordinate by coordinate, in units of the frame.
+/// The data of positions, coordinate by coordinate, in units of the frame.
 struct Known<V: Vector> {
     offset: V,
-    /// What the offset lost.
+    /// The rounding of the offset.
     lost: V,
     radius: V::Scalar,
-    /// What the points of the difference are made of, at most.
+    /// A bound on the coordinates of the cores' points.
     extent: V,
-    /// What the support points of both shapes are wrong by, and how long that is.
+    /// The errors of the support points of both shapes, and their length.
     error: V,
     error_length: V::Scalar,
 }
@@ -281,12 +281,12 @@ impl<V: Vector> Known<V> {
         }
     }
 
-    /// Whether points are known much better along one axis than along another.
+    /// Whether points are much more accurate along one axis than along another.
     fn is_uneven(&self) -> bool {
         self.error.min_element() * V::Scalar::from_f64(4.0) < self.error.max_element()
     }
 
-    /// What points of the difference are wrong by along a unit vector.
+    /// The error of points of the difference along a unit vector.
     fn error_along(&self, n: V) -> V::Scalar {
         raised(n.abs().dot(self.error)).min(self.error_length)
     }
@@ -297,8 +297,8 @@ impl<V: Vector> Known<V> {
         dot_minus(parts, V::Scalar::ZERO)
     }
 
-    /// What the points of both cores closest to one another tell, where the plane across the vector between them meets
-    /// that to what both are wrong by and is beyond the radii: then there is nothing to search.
+    /// The answer from the closest points of both cores, if the plane across the vector between them meets them to both
+    /// errors and is beyond the radii: then there is nothing to search.
     fn between_closest(
         &self,
         pair: &mut AnyPair<'_, V>,
@@ -325,7 +325,7 @@ impl<V: Vector> Known<V> {
         Some(found.near_contact(frame, &best, upper))
     }
 
-    /// What GJK comes to, as it was begun or from where all queries begin.
+    /// The result of GJK, as it was begun or from where all queries begin.
     fn search(
         &self,
         pair: &mut AnyPair<'_, V>,
@@ -372,7 +372,7 @@ impl<V: Vector> Known<V> {
         best.map(|found| self.found(&state, end, frame, found))
     }
 
-    /// What a search has come to, with the best plane and a bound on the length of the shortest vector.
+    /// The result of a search, with the best plane and a bound on the length of the shortest vector.
     fn found(
         &self,
         state: &Gjk<V>,
@@ -384,9 +384,9 @@ impl<V: Vector> Known<V> {
         Found { end, iterations: state.iterations, points, length: state.length }.near_contact(frame, &plane, upper)
     }
 
-    /// The plane that is farthest from zero for certain, of those across the faces that a search has ended at, and
-    /// across its last two directions; and a bound on the length of the shortest vector found. Where the line across a
-    /// plane pierces the face that is as far, no other plane is looked at.
+    /// The plane that is certainly farthest from zero, of those across the faces that a search has ended at, and across
+    /// its last two directions; and a bound on the length of the shortest vector found. If the line across a plane
+    /// pierces the face that is as far, no other plane is tested.
     fn best_plane(&self, pair: &mut AnyPair<'_, V>, state: &Gjk<V>) -> Option<(SupportPlane<V>, V::Scalar)> {
         let points = state.simplex.points();
         let mut pairs = [PointPair::default(); MAX_POINTS];
@@ -437,7 +437,7 @@ impl<V: Vector> Known<V> {
         let n = n.unit()?;
         let level = self.level(n, pair.support(-n).1);
         // The unit vector's length is right to 6 roundings; the sum of the products is rounded once, and is right to
-        // 1024ε² of what is added up.
+        // within 1024ε² of the summands.
         let squared = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(1024.0);
         let rounded = roundings(8.0, level.abs()) + roundings(4.0, self.radius) + squared * n.abs().dot(self.extent);
         level.is_finite().then(|| SupportPlane { n, level, error: raised(self.error_along(n) + rounded) })
@@ -457,18 +457,17 @@ impl<V: Vector> Known<V> {
             dot_minus(parts, V::Scalar::ZERO)
         });
         let x = x / sum;
-        // What the weights sum up to is right to three roundings, and to one each the sum of the products and the
-        // quotient.
+        // The sum of the weights is right to three roundings, and to one each the sum of the products and the quotient.
         self.length_of(x, roundings_of(5.0, x.abs()) + self.rounded_twice())
     }
 
-    /// What sums of up to 16 products lose that are added up in twice the precision, beside one rounding of the sum:
-    /// 17² quarters of `ε²`.
+    /// A bound on the rounding of sums of up to 16 products that are added up in twice the precision, besides one
+    /// rounding of the sum: 17² quarters of `ε²`.
     fn rounded_twice(&self) -> V {
         self.extent * (V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(128.0))
     }
 
-    /// The same of the vector between two points, of which it is known what the two sums lose.
+    /// The same for the vector between two points, given the rounding of the two sums.
     fn length_between(&self, PointPair { a, b }: PointPair<V>) -> V::Scalar {
         let apart = a - b;
         let lost = lost_in_sum(a, -b).abs() + lost_in_sum(apart, self.offset).abs();
@@ -476,7 +475,7 @@ impl<V: Vector> Known<V> {
     }
 
     /// A bound on the length of a vector `x` of the difference, which rounding has moved by no more than `rounded`,
-    /// coordinate by coordinate, beside what its points are wrong by.
+    /// coordinate by coordinate, besides the errors of its points.
     ///
     /// With `u` the unit vector along it, the true vector is `x` but for some `e`. Along `u` that adds `|u|·|e|`, taken
     /// coordinate by coordinate, and across it hardly anything: the length is at most `√(p² + |e|²)` with `p = |x| +
@@ -493,17 +492,17 @@ impl<V: Vector> Known<V> {
         if length.is_finite() { length } else { Float::infinity() }
     }
 
-    /// What the corners of a simplex are wrong by at most, twice, and a few roundings.
+    /// A bound on twice the error of the corners of a simplex, and a few roundings.
     fn error_of_corners(&self) -> V::Scalar {
         self.error_length * V::Scalar::from_f64(2.0) + roundings(16.0, self.extent.norm())
     }
 
     /// A bound on the distance of the bodies from a face of the difference that the line along the unit vector `n`
-    /// through zero pierces, for certain: where it does, no corner of the face is nearer along `n`.
+    /// through zero certainly pierces: then no corner of the face is nearer along `n`.
     ///
-    /// Along `n` the face is seen in the plane of two coordinates, the ones where `n` is shorter. There zero is within
-    /// a triangle where the areas with its sides are all of one sign, by more than they may be wrong; in the plane,
-    /// within a segment where its ends are on two sides.
+    /// Along `n` the face is projected to the plane of two coordinates, the ones where `n` is shorter. There zero is
+    /// within a triangle if the areas with its sides are all of one sign, by more than their errors; in the plane,
+    /// within a segment if its ends are on two sides.
     fn length_at_pierced(&self, state: &Gjk<V>, n: V) -> V::Scalar {
         let number = V::Scalar::from_f64;
         let points = state.simplex.points();
@@ -535,7 +534,7 @@ impl<V: Vector> Known<V> {
         if !is_inside {
             return Float::infinity();
         }
-        // The face may be behind zero, which is outside all the same where what is beyond the face is not of the
+        // The face may be behind zero, which is outside all the same if the part beyond the face does not belong to the
         // difference.
         let levels = state.simplex.weighted().map(|(_, pair)| self.level(n, pair).abs());
         let farthest = levels.fold(V::Scalar::ZERO, V::Scalar::max);

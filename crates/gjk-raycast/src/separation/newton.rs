@@ -33,8 +33,7 @@ pub(super) struct Piece<V: Vector> {
     hessian: Symmetric<V::Scalar>,
 }
 
-/// The same piece as seen along another unit vector `u`: its support point across `u`, its support value, and its
-/// Hessian.
+/// The same piece along another unit vector `u`: its support point across `u`, its support value, and its Hessian.
 struct SeenAlong<S> {
     slope: Across<S>,
     value: S,
@@ -47,8 +46,8 @@ impl<V: Vector> Piece<V> {
         Self { n: vertex.along, point: vertex.point, across, hessian: cores.hessian(vertex.along, across) }
     }
 
-    /// The piece of a support point as seen from this one. Of a point that was not found along any direction, such as
-    /// one that coincides with zero, no more is known than that it is a corner.
+    /// The piece of a support point relative to this one. A point that was not found along any direction, such as one
+    /// that coincides with zero, counts as a corner.
     pub(super) fn beside(&self, cores: &Cores<'_, V>, vertex: &Vertex<V>) -> Self {
         if vertex.along == V::ZERO {
             return Self { point: vertex.point, hessian: Symmetric::ZERO, ..*self };
@@ -135,8 +134,8 @@ impl<V: Vector> Piece<V> {
     ///
     /// of which the second gives `δ` along `e`, and the first what it is across.
     ///
-    /// What is predicted of a piece is off by the cube of the angle to where it was seen. So the step leads past the
-    /// fold by a part of the angle's square, onto the piece that is to be `seen` again.
+    /// The prediction for a piece is off by the cube of the angle to where it was found. So the step leads past the
+    /// fold by a part of the angle's square, onto the piece that has to be found again.
     pub(super) fn step_along_fold(&self, other: &Self, seen: FoldSide) -> Option<V> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let value = self.n.dot(self.point);
@@ -155,7 +154,7 @@ impl<V: Vector> Piece<V> {
         let lead = match seen {
             FoldSide::Near if !self.hessian.is_zero() => -lead,
             FoldSide::Far if !other.hessian.is_zero() => lead,
-            // A vertex is known as well as it ever will be.
+            // A vertex is exact.
             FoldSide::Near | FoldSide::Far => zero,
         };
         let along = (value - other_value + lead) / squared;
@@ -174,9 +173,9 @@ impl<V: Vector> Piece<V> {
 }
 
 impl<V: Vector> Piece<V> {
-    /// The unit vector on the way to the edge of a piece that has no bottom of its own, for where [`step`](Self::step)
-    /// and [`step_along_fold`](Self::step_along_fold) lead nowhere: to the fold with another piece, if there is one
-    /// that is lower.
+    /// The unit vector on the way to the edge of a piece that has no bottom of its own, if [`step`](Self::step) and
+    /// [`step_along_fold`](Self::step_along_fold) lead nowhere: to the fold with another piece, if there is one that is
+    /// lower.
     pub(super) fn step_to_edge(&self, other: Option<&Self>) -> Option<V> {
         let [e, f] = self.across;
         let slope = (e.dot(self.point), f.dot(self.point));
@@ -191,8 +190,8 @@ impl<V: Vector> Piece<V> {
     ///
     /// Along that direction the minimum is where it would be on any piece. Across it the support value has a slope and
     /// no bottom: it falls until another piece begins, at the latest where it would be zero. That is far away as long
-    /// as the first step is worth its while, which is then taken alone; else the second leads a little farther than to
-    /// zero, onto the other piece.
+    /// as the first step gains something, which is then taken alone; otherwise the second leads a little farther than
+    /// to zero, onto the other piece.
     fn step_along_curvature(&self, slope: Across<V::Scalar>) -> Option<Across<V::Scalar>> {
         let (zero, number) = (V::Scalar::ZERO, V::Scalar::from_f64);
         let value = self.n.dot(self.point);

@@ -1,4 +1,4 @@
-//! The depth of boxes, parallelograms and segments in one another, in closed form.
+//! The depth of overlapping boxes, parallelograms and segments, in closed form.
 
 use convex_support::numerics::twofold::two_product;
 use convex_support::{Core, CoreKind, Parallelotope, Scalar, SupportMap, Vector};
@@ -23,8 +23,8 @@ const TURN: f64 = 4.0;
 /// How much longer or shorter than one it may be, in ε.
 const STRETCH: f64 = 3.0;
 
-/// What a sum of five products of three terms each loses, and the centre in the last of them, in ε of the sum of their
-/// magnitudes.
+/// The rounding of a sum of five products of three terms each, with the centre in the last of them, in ε of the sum
+/// of their magnitudes.
 const SUM: f64 = 4.5;
 
 /// Facets that are by this many ε of the size farther than the nearest may be the nearest: more than all of the above.
@@ -33,10 +33,10 @@ const TIE: f64 = 32.0;
 /// Edges that leave a plane by fewer ε of the size lie in it.
 const IN_PLANE: f64 = 16.0;
 
-/// What a foot may seem to be outside of its facet by rounding, as a part of the edges.
+/// How far outside of its facet a projection may seem to be by rounding, as a part of the edges.
 const OUTSIDE: f64 = 1e-12;
 
-/// Heights of the edges, relative to their lengths, by which a facet of more than two edges is seen as a roof of
+/// Heights of the edges, relative to their lengths, by which a facet of more than two edges becomes a roof of
 /// parallelograms: any that are not multiples of one another.
 const HEIGHTS: [f64; EDGES] = [1.0, -0.7, 0.45, 0.83, -0.37, 0.61];
 
@@ -74,7 +74,7 @@ const OTHERS: [[[f64; EDGES]; EDGES]; EDGES] = {
 ///
 /// It is a zonotope, and each of its facets is spanned by two edges, in 2D by one: the axes of the separating axis
 /// test. All other edges lead to the facet from the centre, so that its distance from there is `Σ |n·eₖ|`. Everything
-/// is computed in double precision, and in the unit of the cores, so that it adds nothing to what `f32` has lost
+/// is computed in double precision, and in the unit of the cores, so that it adds nothing to the rounding of `f32`
 /// before.
 pub(super) struct Zonotope {
     center: Vec3,
@@ -94,7 +94,7 @@ pub(super) struct NearestFacet {
     pub(super) depth: f64,
     pub(super) inner: f64,
     pub(super) outer: f64,
-    /// How far along each edge zero's foot is.
+    /// The place of zero's projection along each edge.
     weights: [f64; EDGES],
 }
 
@@ -106,7 +106,7 @@ struct ZonotopeFacet {
     depth: f64,
 }
 
-/// What two edges span.
+/// The span of two edges.
 enum EdgeSpan {
     /// A facet, and its unit normal.
     ZonotopeFacet(Vec3),
@@ -114,7 +114,7 @@ enum EdgeSpan {
     Parallel(f64),
 }
 
-/// The core of a shape as a parallelotope, or a point as the least of them.
+/// The core of a shape as a parallelotope; a point is one without edges.
 pub(super) fn parallelotope<S: SupportMap + ?Sized>(
     shape: &S,
     core: &Core<S::Vector>,
@@ -138,14 +138,14 @@ impl Zonotope {
         Self { center, edges, squared, coordinates, size }
     }
 
-    /// Whether all of it is seen to lie beyond zero along a vector.
+    /// Whether all of it certainly lies beyond zero along a vector.
     pub(super) fn is_beyond<V: Vector>(&self, along: V) -> bool {
         let along = array(along);
         let reach = self.edges.iter().map(|&edge| dot(edge, along).abs());
         dot(self.center, along) > reach.fold(0.0, |sum, reach| sum + reach)
     }
 
-    /// The facet nearest to zero; `None` where zero is not certain to be within.
+    /// The facet nearest to zero; `None` if zero is not certainly within.
     pub(super) fn nearest_facet<V: Vector>(&self) -> Option<NearestFacet> {
         let spans: &[[usize; 2]] = if V::DIM == 2 { &SPANS_OF_PLANE } else { &SPANS };
         let mut depths = [f64::INFINITY; SPANS.len()];
@@ -177,7 +177,7 @@ impl Zonotope {
         let (mut weights, mut outside) = self.foot::<V>(&nearest);
         let mut normal = nearest.normal;
         if outside > OUTSIDE {
-            // Another is as near to rounding, and has the foot.
+            // Another one is as near to rounding, and has the projection.
             for facet in near() {
                 let (found, by) = self.foot::<V>(&facet);
                 if by < outside {
@@ -188,7 +188,7 @@ impl Zonotope {
         Some(NearestFacet { normal, depth: nearest.depth, inner, outer, weights: weights.map(|t| t.clamp(-1.0, 1.0)) })
     }
 
-    /// What two edges of the zonotope span, or one in the plane.
+    /// The span of two edges of the zonotope, or of one in the plane.
     #[inline(always)]
     fn span<V: Vector>(&self, [i, j]: [usize; 2]) -> EdgeSpan {
         let (edges, squared) = (&self.edges, &self.squared);
@@ -211,10 +211,10 @@ impl Zonotope {
         Some(ZonotopeFacet { edges: spanned, normal, depth })
     }
 
-    /// What the distance of a facet may be wrong by.
+    /// A bound on the error of a facet's distance.
     ///
-    /// Let `n` be its normal and `z` a point in the middle of it. Along the true normal `n + δ` the zonotope reaches at
-    /// least as far as `z` does, and that is `n·z + δ·z`, in which only the part of `z` across `n` counts: both are
+    /// Let `n` be its normal and `z` a point in the middle of it. The support value of the zonotope along the true
+    /// normal `n + δ` is at least that of `z`, `n·z + δ·z`, in which only the part of `z` across `n` counts: both are
     /// unit vectors.
     fn error(&self, facet: &ZonotopeFacet) -> f64 {
         let n = facet.normal;
@@ -238,13 +238,13 @@ impl Zonotope {
         IN_PLANE * f64::EPSILON * self.size
     }
 
-    /// How far along each edge zero's foot on the plane of a facet is; and by how much it seems to be outside of the
-    /// facet, as a part of the edges.
+    /// The place of zero's projection on the plane of a facet along each edge; and how far it seems to be outside of
+    /// the facet, as a part of the edges.
     ///
     /// Edges that do not lie in the plane lead to it all the way. If the facet is not a parallelogram, some of the
     /// others do not span it. Lifted to heights `wₖ`, its lower side becomes a roof of parallelograms: that of the
     /// edges `p`, `q` is below `φ·x`, with `φ·e_p = w_p` and `φ·e_q = w_q`, and there every other edge leads to where
-    /// it is lower, the sign of `φ·eₖ − wₖ`. One of them has the foot.
+    /// it is lower, the sign of `φ·eₖ − wₖ`. One of them has the projection.
     fn foot<V: Vector>(&self, facet: &ZonotopeFacet) -> ([f64; EDGES], f64) {
         let n = facet.normal;
         let flat = self.flat();
@@ -252,7 +252,7 @@ impl Zonotope {
         let mut rest: Vec3 = core::array::from_fn(|i| n[i] * facet.depth - self.center[i]);
         let (mut plane, mut count) = ([0; EDGES], 0);
         for (k, &edge) in self.edges.iter().enumerate() {
-            // Edges without a length that counts, as those of a point, span nothing and lead nowhere.
+            // Edges whose length does not count, as those of a point, span nothing and lead nowhere.
             if self.squared[k] <= 0.0 {
                 continue;
             }
@@ -312,8 +312,8 @@ impl Zonotope {
 }
 
 impl NearestFacet {
-    /// The points of both parallelotopes at zero's foot, in the unit, and halfway to one another what rounding leaves
-    /// between them.
+    /// The points of both parallelotopes at zero's projection, in the unit. Each is moved half of the way by which
+    /// rounding keeps them apart.
     pub(super) fn points<V: Vector>(
         &self,
         [a, b]: &[Parallelotope<V>; 2],

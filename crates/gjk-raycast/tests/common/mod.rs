@@ -1,9 +1,12 @@
 //! What the regression tests share: numbers and vectors of either precision.
 
 pub(crate) mod behind_pointers;
+pub(crate) mod space;
+pub(crate) mod strategies;
 
 use behind_pointers::{distance, intersects, linear_cast, ray_cast};
-use convex_support::{Core, Cuboid, Hint, Posed, Rounding, Scalar, ScalarOf, SupportMap, Vector, Vector3};
+use convex_support::glam::DVec3;
+use convex_support::{Core, Cuboid, Hint, Posed, Rotation, Rounding, Scalar, ScalarOf, SupportMap, Vector};
 use gjk_raycast::{
     Distance, DistanceOptions, IntersectOptions, Intersection, LinearCast, LinearCastOptions, Motion, Ray, RayCast,
     RayCastOptions,
@@ -98,21 +101,9 @@ pub(crate) fn directions(count: u32) -> impl Iterator<Item = [f64; 3]> {
     })
 }
 
-/// Half the turn quaternion components as the precision's rotation: `x`, `y`, `z`, `w`.
-pub(crate) trait Quaternion: Vector3 {
-    fn quaternion(q: [f64; 4]) -> Self::Rotation;
-}
-
-impl Quaternion for convex_support::glam::DVec3 {
-    fn quaternion(q: [f64; 4]) -> Self::Rotation {
-        convex_support::glam::DQuat::from_array(q)
-    }
-}
-
-impl Quaternion for convex_support::glam::Vec3A {
-    fn quaternion(q: [f64; 4]) -> Self::Rotation {
-        convex_support::glam::DQuat::from_array(q).as_quat()
-    }
+/// The rotation of a quaternion with components `x`, `y`, `z`, `w`.
+pub(crate) fn quaternion<V: Vector>(q: [f64; 4]) -> V::Rotation {
+    V::Rotation::from_xyzw(q.map(V::Scalar::from_f64))
 }
 
 /// Numbers from a seed (Marsaglia's xorshift).
@@ -124,6 +115,21 @@ impl Random {
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
         from + (to - from) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A vector with coordinates up to `reach`.
+    pub(crate) fn vector<V: Vector>(&mut self, reach: f64) -> V {
+        V::from_fn(|_| s::<V>(self.number(-reach, reach)))
+    }
+
+    /// A unit vector.
+    pub(crate) fn direction(&mut self) -> DVec3 {
+        loop {
+            let v: DVec3 = self.vector(1.0);
+            if (0.01..1.0).contains(&v.length_squared()) {
+                return v.normalize();
+            }
+        }
     }
 }
 

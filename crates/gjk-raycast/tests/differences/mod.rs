@@ -78,12 +78,8 @@ impl Random {
         self.number(-1.0, 1.0)
     }
 
-    pub(crate) fn vector<V: Vector<Scalar = f64>>(&mut self) -> V {
-        V::from_fn(|_| self.signed())
-    }
-
     pub(crate) fn motion<V: Vector<Scalar = f64>>(&mut self) -> RigidMotion<V> {
-        let (velocity, center) = (self.vector(), self.vector());
+        let (velocity, center) = (self.vector(1.0), self.vector(1.0));
         let angular_velocity = V::AngularVelocity::from_coordinates(|_| self.signed());
         RigidMotion { velocity, angular_velocity, center }
     }
@@ -160,7 +156,7 @@ impl<V: Space> Body<V> {
     pub(crate) fn random(kind: &str, random: &mut Random) -> Self {
         let sizes = V::from_fn(|_| random.number(0.2, 1.0));
         let [x, y] = [sizes.get(0), sizes.get(1)];
-        let points = |random: &mut Random| (0..10).map(|_| random.vector::<V>()).collect::<Vec<_>>();
+        let points = |random: &mut Random| (0..10).map(|_| random.vector::<V>(1.0)).collect::<Vec<_>>();
         let local: Solid<V> = match kind {
             "ball" => Box::new(Ball::new(x).expect(VALID)),
             "ellipsoid" => Box::new(Ellipsoid::new(V::ZERO, sizes, V::Rotation::default()).expect(VALID)),
@@ -174,7 +170,7 @@ impl<V: Space> Body<V> {
             "rounded" => Box::new(Rounded::new(Polytope::new(points(random)).expect(VALID), 0.1).expect(VALID)),
             _ => V::upright(kind, x, y),
         };
-        let at = random.vector::<V>();
+        let at = random.vector::<V>(1.0);
         Self { shape: Posed::new(Rc::new(local), V::rotation(random), at).expect(VALID) }
     }
 

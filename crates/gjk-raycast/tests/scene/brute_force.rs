@@ -7,7 +7,8 @@ use gjk_raycast::{
     SignedDistanceOptions, contact, distance, linear_cast, motion_cast, ray_cast,
 };
 
-use super::worlds::{Shape, Space, World};
+use super::worlds::{Shape, World};
+use crate::common::space::Space;
 
 pub(crate) fn rays<V: Space>(world: &World<V>, ray: Ray<V>, options: RayCastOptions<V>) -> Vec<(usize, RayCast<V>)> {
     let cast = |body: &Body<Shape<V>>| match body {

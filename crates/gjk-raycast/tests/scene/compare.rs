@@ -9,7 +9,8 @@ use num_traits::Float;
 
 use super::brute_force;
 use super::numbers::Numbers;
-use super::worlds::{Space, World, body};
+use super::worlds::{World, body};
+use crate::common::space::Space;
 
 /// How many questions were asked, and how they came out.
 #[derive(Debug, Default)]

@@ -12,7 +12,9 @@ use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
 
 use compare::{Count, ask};
 use numbers::Numbers;
-use worlds::{KINDS, Space, world};
+use worlds::{KINDS, world};
+
+use crate::common::space::Space;
 
 /// How many questions are asked in all, unless `SCENE_QUESTIONS` says another number.
 const QUESTIONS: usize = 12_000;

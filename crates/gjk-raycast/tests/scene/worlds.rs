@@ -1,43 +1,14 @@
 //! Scenes of all kinds of bodies, and what happens to them.
 
-use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Posed, Rotation, Rounded, Scalar, Segment,
-    SupportMap, Triangle, Vector, Vector3,
+    Ball, Capsule, Cuboid, Ellipsoid, Point, Polytope, Posed, Rotation, Rounded, Scalar, Segment, SupportMap, Triangle,
 };
 use gjk_raycast::{HalfSpace, Scene};
 
 use super::numbers::Numbers;
+use crate::common::space::Space;
 
 pub(crate) type Shape<V> = Box<dyn SupportMap<Vector = V> + Sync>;
-
-/// What a space has beside the shapes of every dimension.
-pub(crate) trait Space: Vector {
-    fn upright(kind: usize, height: Self::Scalar, radius: Self::Scalar) -> Option<Shape<Self>>;
-}
-
-fn cylinder_or_cone<V: Vector3>(kind: usize, height: V::Scalar, radius: V::Scalar) -> Option<Shape<V>> {
-    Some(if kind == 0 {
-        Box::new(Cylinder::new(height, radius).ok()?)
-    } else {
-        Box::new(Cone::new(height, radius).ok()?)
-    })
-}
-
-macro_rules! solid {
-    ($($V:ty),*) => { $(impl Space for $V {
-        fn upright(kind: usize, height: Self::Scalar, radius: Self::Scalar) -> Option<Shape<Self>> {
-            cylinder_or_cone::<Self>(kind, height, radius)
-        }
-    })* };
-}
-macro_rules! planar {
-    ($($V:ty),*) => { $(impl Space for $V {
-        fn upright(_: usize, _: Self::Scalar, _: Self::Scalar) -> Option<Shape<Self>> { None }
-    })* };
-}
-solid!(DVec3, Vec3, Vec3A);
-planar!(DVec2, Vec2);
 
 /// A shape of any kind about the origin.
 fn shape<V: Space>(numbers: &mut Numbers, size: f64) -> Shape<V> {

@@ -15,6 +15,7 @@ use gjk_raycast::{
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 
+use crate::common::space::spin as angular_velocity;
 use crate::common::v;
 
 mod plane;
@@ -35,8 +36,6 @@ struct Shape {
 trait Space: Vector {
     /// The shape with its origin at a place.
     fn shape(shape: &Shape, place: [f64; 3]) -> Box<dyn SupportMap<Vector = Self>>;
-    /// The angular velocity of which the coordinates are near these; in the plane the last one.
-    fn spin(w: [f64; 3]) -> Self::AngularVelocity;
     /// A vector across `n` that depends on `u`.
     fn across(n: Self, u: Self) -> Self;
 }
@@ -192,10 +191,13 @@ fn brackets_of_motion_casts<D: Double>(pair: [Body<D>; 2], [velocity, center]: [
     let center = rounded(pair[0].place + center);
     let options = MotionCastOptions::new().with_max_time(1.0);
     let [a, b] = pair.map(|body| body.is::<D>());
-    let motion = RigidMotion { velocity, angular_velocity: D::spin(spin), center };
+    let motion = RigidMotion { velocity, angular_velocity: angular_velocity::<D>(spin), center };
     let truth = motion_cast(&a, motion, &b, RigidMotion::default(), options).expect("finite");
-    let motion =
-        RigidMotion { velocity: single(velocity), angular_velocity: D::Single::spin(spin), center: single(center) };
+    let motion = RigidMotion {
+        velocity: single(velocity),
+        angular_velocity: angular_velocity::<D::Single>(spin),
+        center: single(center),
+    };
     let options = MotionCastOptions::new().with_max_time(1.0);
     let [a, b] = pair.map(|body| body.is::<D::Single>());
     let answer = motion_cast(&a, motion, &b, RigidMotion::default(), options).expect("finite");
@@ -259,10 +261,13 @@ fn brackets_over_half_spaces<D: Double>(
 
     let center = rounded(body.place + center);
     let options = MotionCastOptions::new().with_max_time(1.0);
-    let motion = RigidMotion { velocity, angular_velocity: D::spin(spin), center };
+    let motion = RigidMotion { velocity, angular_velocity: angular_velocity::<D>(spin), center };
     let truth = double.motion_cast(&body.is::<D>(), motion, options).expect("finite");
-    let motion =
-        RigidMotion { velocity: single(velocity), angular_velocity: D::Single::spin(spin), center: single(center) };
+    let motion = RigidMotion {
+        velocity: single(velocity),
+        angular_velocity: angular_velocity::<D::Single>(spin),
+        center: single(center),
+    };
     let options = MotionCastOptions::new().with_max_time(1.0);
     let answer = half_space.motion_cast(&body.is::<D::Single>(), motion, options).expect("finite");
     let claim = Claim::new(&answer.outcome, answer.lower, answer.upper);

@@ -48,10 +48,6 @@ impl Space for DVec2 {
         shape_of(shape, place)
     }
 
-    fn spin([_, _, w]: [f64; 3]) -> f64 {
-        w
-    }
-
     fn across(n: Self, u: Self) -> Self {
         n.perp() * u.x
     }
@@ -60,10 +56,6 @@ impl Space for DVec2 {
 impl Space for Vec2 {
     fn shape(shape: &Shape, place: [f64; 3]) -> Box<dyn SupportMap<Vector = Self>> {
         shape_of(shape, place)
-    }
-
-    fn spin([_, _, w]: [f64; 3]) -> f32 {
-        w as f32
     }
 
     fn across(n: Self, u: Self) -> Self {

@@ -2,19 +2,19 @@
 
 use convex_support::glam::{DQuat, DVec3, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Rounded, Segment, SupportMap, Triangle,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Rounded, Segment, SupportMap, Triangle, Vector3,
 };
 use proptest::prelude::*;
 
 use super::{Double, Shape, Space, bodies, sizes, vector};
-use crate::common::{Quaternion, s, turned, v};
+use crate::common::{quaternion, s, turned, v};
 
-fn shape_of<V: Quaternion>(shape: &Shape, place: [f64; 3]) -> Box<dyn SupportMap<Vector = V>> {
+fn shape_of<V: Vector3>(shape: &Shape, place: [f64; 3]) -> Box<dyn SupportMap<Vector = V>> {
     let [x, y, z] = shape.sizes;
     let size = |i: usize| s::<V>([x, y, z][i]);
     let corner = |c: [f64; 3]| v::<V>(c);
     let half_extents = corner([x, y, z]);
-    let posed = V::quaternion(shape.turn);
+    let posed = quaternion::<V>(shape.turn);
     match shape.kind {
         0 => Box::new(turned(Cuboid::new(half_extents).expect("positive"), posed, place)),
         1 => Box::new(turned(Ball::<V>::new(size(0)).expect("positive"), posed, place)),
@@ -22,7 +22,7 @@ fn shape_of<V: Quaternion>(shape: &Shape, place: [f64; 3]) -> Box<dyn SupportMap
         3 => Box::new(turned(Cylinder::<V>::new(size(0), size(1)).expect("positive"), posed, place)),
         4 => Box::new(turned(Cone::<V>::new(size(0), size(1)).expect("positive"), posed, place)),
         5 => {
-            let straight = V::quaternion([0.0, 0.0, 0.0, 1.0]);
+            let straight = quaternion::<V>([0.0, 0.0, 0.0, 1.0]);
             let ellipsoid = Ellipsoid::new(V::ZERO, half_extents, straight).expect("positive");
             Box::new(turned(ellipsoid, posed, place))
         }
@@ -50,10 +50,6 @@ impl Space for DVec3 {
         shape_of(shape, place)
     }
 
-    fn spin(w: [f64; 3]) -> Self {
-        v(w)
-    }
-
     fn across(n: Self, u: Self) -> Self {
         n.cross(u)
     }
@@ -62,10 +58,6 @@ impl Space for DVec3 {
 impl Space for Vec3A {
     fn shape(shape: &Shape, place: [f64; 3]) -> Box<dyn SupportMap<Vector = Self>> {
         shape_of(shape, place)
-    }
-
-    fn spin(w: [f64; 3]) -> Self {
-        v(w)
     }
 
     fn across(n: Self, u: Self) -> Self {

@@ -11,7 +11,7 @@
 use crate::enclosing::iterate::Iterate;
 use crate::enclosing::newton::Workspace;
 use crate::numerics::dimension::{Dimension, Dynamic};
-use crate::numerics::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
+use crate::numerics::linalg::{cholesky, dot, solve_factored};
 
 /// Newton steps along one path; twenty is typical.
 const MAX_STEPS: usize = 80;
@@ -69,8 +69,7 @@ pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, _: &mut Workspace<D>, gap
         if !cholesky(Dynamic(k), &mut factor) {
             break;
         }
-        solve_lower(Dynamic(k), &factor, &mut du);
-        solve_lower_transpose(Dynamic(k), &factor, &mut du);
+        solve_factored(Dynamic(k), &factor, &mut du);
         let dt: Vec<f64> = (0..k).map(|i| r1[i] + dot(&jacobian[i * k..(i + 1) * k], &du)).collect();
         let mut step: f64 = 1.0;
         for (x, d) in u.iter().zip(&du).chain(t.iter().zip(&dt)) {

@@ -23,7 +23,7 @@ use crate::enclosing::start::Start;
 use crate::enclosing::working_set::WorkingSet;
 use crate::error::EnclosingError;
 use crate::numerics::dimension::{Dimension, Dynamic};
-use crate::numerics::linalg::{cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
+use crate::numerics::linalg::{cholesky, cholesky_log_det, dot, solve_factored};
 use crate::options::Status;
 use crate::points::{Copied, Points};
 
@@ -175,8 +175,7 @@ fn slice(
     let mut p11: Vec<f64> = (0..r).flat_map(|i| p[i * n..i * n + r].iter().copied()).collect();
     let mut center: Vec<f64> = (0..r).map(|i| -p[i * n + r]).collect();
     let log_det = cholesky_log_det(rank, &mut p11).ok_or(EnclosingError::OutOfRange)?;
-    solve_lower(rank, &p11, &mut center);
-    solve_lower_transpose(rank, &p11, &mut center);
+    solve_factored(rank, &p11, &mut center);
     // det X*₍N₎ follows from min f = n·ln n + ln det S* and ln det X*₍N₎ = −ln det S* − N·ln N.
     let r_float = r as f64;
     let bound =
@@ -228,8 +227,7 @@ fn negative_inverse(n: usize, factor: &[f64]) -> Vec<f64> {
     for j in 0..n {
         let mut column = vec![0.0; n];
         column[j] = 1.0;
-        solve_lower(Dynamic(n), factor, &mut column);
-        solve_lower_transpose(Dynamic(n), factor, &mut column);
+        solve_factored(Dynamic(n), factor, &mut column);
         for i in 0..=j {
             g[svec_index(n, i, j)] = if i == j { -column[i] } else { -std::f64::consts::SQRT_2 * column[i] };
         }
@@ -270,8 +268,7 @@ fn negative_curvature(n: usize, matrix: &mut [f64]) -> Option<Vec<f64>> {
     let mut v: Vec<f64> = (0..k).map(|i| -given[i * n + k]).collect();
     let mut sound = leading(k);
     cholesky(Dynamic(k), &mut sound);
-    solve_lower(Dynamic(k), &sound, &mut v);
-    solve_lower_transpose(Dynamic(k), &sound, &mut v);
+    solve_factored(Dynamic(k), &sound, &mut v);
     v.push(1.0);
     v.resize(n, 0.0);
     Some(v)

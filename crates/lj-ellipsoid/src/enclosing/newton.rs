@@ -17,7 +17,7 @@ use crate::enclosing::moments::Moments;
 use crate::enclosing::violators::elimination_threshold;
 use crate::enclosing::working_set::WorkingSet;
 use crate::numerics::dimension::{Const, Dimension, Dynamic};
-use crate::numerics::linalg::{cholesky, solve_lower, solve_lower_transpose};
+use crate::numerics::linalg::{cholesky, solve_factored};
 
 /// The proximal term relative to the largest diagonal of H: far above the rounding of its Cholesky factor, far below
 /// what ω could tell.
@@ -311,8 +311,7 @@ fn solve_free(k: usize, h: &[f64], r: &[f64], free: &[usize], factor: &mut Vec<f
 
 fn solve_definite<D: Dimension>(dim: D, matrix: &mut [f64], x: &mut [f64]) -> bool {
     cholesky(dim, matrix) && {
-        solve_lower(dim, matrix, x);
-        solve_lower_transpose(dim, matrix, x);
+        solve_factored(dim, matrix, x);
         true
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::inscribed::coordinates::Rows;
 use crate::numerics::dimension::Dimension;
-use crate::numerics::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
+use crate::numerics::linalg::{cholesky, dot, solve_factored};
 
 /// What is known of the directions in which half-spaces are open.
 pub(crate) enum Opening {
@@ -49,8 +49,7 @@ pub(crate) fn opening<D: Dimension>(dim: D, rows: &Rows, is_open: &dyn Fn(&[f64]
         if !cholesky(dim, hessian) {
             break;
         }
-        solve_lower(dim, hessian, step);
-        solve_lower_transpose(dim, hessian, step);
+        solve_factored(dim, hessian, step);
         let changes: Vec<f64> = rows.iter().map(|(a, _)| dot(a, step)).collect();
         if changes.iter().zip(&y).all(|(x, y)| *y == 0.0 || *x > -0.5) {
             return Opening::None;

@@ -19,7 +19,7 @@
 
 use crate::inscribed::point::Point;
 use crate::numerics::dimension::Dimension;
-use crate::numerics::linalg::{UNIT_ROUNDOFF, cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
+use crate::numerics::linalg::{UNIT_ROUNDOFF, cholesky, cholesky_log_det, dot, solve_factored};
 use crate::numerics::twofold::Sum;
 
 /// The largest share of one that errors may move the constraints with weight by, for the proof to be one.
@@ -85,8 +85,7 @@ fn norm_of_inverse<D: Dimension>(dim: D, l: &[f64]) -> f64 {
     let column = |k: usize| {
         let mut e = dim.zero();
         e.as_mut()[k] = 1.0;
-        solve_lower(dim, l, e.as_mut());
-        solve_lower_transpose(dim, l, e.as_mut());
+        solve_factored(dim, l, e.as_mut());
         dot(e.as_ref(), e.as_ref())
     };
     (0..dim.get()).map(column).sum::<f64>().sqrt()

@@ -8,7 +8,7 @@
 
 use crate::inscribed::coordinates::Rows;
 use crate::numerics::dimension::Dynamic;
-use crate::numerics::linalg::{cholesky, dot, power_of_two_inverse, solve_lower, solve_lower_transpose};
+use crate::numerics::linalg::{cholesky, dot, power_of_two_inverse, solve_factored};
 
 /// Depths below this share of the largest offset are too little for the program to tell.
 const THIN: f64 = 1e-6;
@@ -127,8 +127,7 @@ impl ChebyshevIterate {
         if !cholesky(Dynamic(k), &mut hessian) {
             return false;
         }
-        solve_lower(Dynamic(k), &hessian, &mut step);
-        solve_lower_transpose(Dynamic(k), &hessian, &mut step);
+        solve_factored(Dynamic(k), &hessian, &mut step);
         let dc: Vec<f64> = rows.iter().map(|(p, _)| -(dot(p, &step[..k - 1]) + step[k - 1])).collect();
         let dy: Vec<f64> = y.iter().zip(&*c).zip(&dc).map(|((y, c), dc)| (target - c * y - y * dc) / c).collect();
         let length = |x: &[f64], d: &[f64]| {

@@ -13,7 +13,7 @@
 
 use crate::inscribed::point::Point;
 use crate::numerics::dimension::{Const, Dimension, Dynamic, LANES};
-use crate::numerics::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
+use crate::numerics::linalg::{cholesky, dot, solve_factored};
 
 /// The factored system at a point, and room for the next.
 pub(crate) struct System {
@@ -203,8 +203,7 @@ impl System {
             *delta = right - dot_in_lanes(&self.weighted, g);
         }
         let dim = Dynamic(self.size);
-        solve_lower(dim, &self.factor, delta);
-        solve_lower_transpose(dim, &self.factor, delta);
+        solve_factored(dim, &self.factor, delta);
         dc.fill(0.0);
         for (delta, g) in delta.iter().zip(self.gradients.chunks_exact(m)) {
             dc.iter_mut().zip(g).for_each(|(dc, g)| *dc -= delta * g);
@@ -282,8 +281,7 @@ fn inverse<D: Dimension>(dim: D, b: &[f64]) -> Option<D::Matrix> {
     let mut inverse = dim.zero_matrix();
     for (row, e) in inverse.as_mut().chunks_exact_mut(n).enumerate() {
         e[row] = 1.0;
-        solve_lower(dim, factor.as_ref(), e);
-        solve_lower_transpose(dim, factor.as_ref(), e);
+        solve_factored(dim, factor.as_ref(), e);
     }
     Some(inverse)
 }

@@ -21,7 +21,7 @@ use crate::inscribed::newton_system::{Direction, System};
 use crate::inscribed::observer::{InscribedIterate, Observer};
 use crate::inscribed::point::Point;
 use crate::numerics::dimension::Dimension;
-use crate::numerics::linalg::{cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
+use crate::numerics::linalg::{cholesky, cholesky_log_det, dot, solve_factored};
 use crate::options::{InscribedOptions, Status};
 
 /// The bound on ln det B that multipliers prove.
@@ -50,8 +50,7 @@ fn dual_bound<D: Dimension>(dim: D, p: &[f64], v: &[f64], y: &[f64], passes: usi
         if !cholesky(dim, gram) {
             return None;
         }
-        solve_lower(dim, gram, residual);
-        solve_lower_transpose(dim, gram, residual);
+        solve_factored(dim, gram, residual);
         for (p, y) in p.chunks_exact(n).zip(&mut y) {
             *y *= 1.0 - dot(p, residual);
             if !(*y >= 0.0) {

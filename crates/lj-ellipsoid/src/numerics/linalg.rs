@@ -105,6 +105,13 @@ pub(crate) fn solve_lower_transpose<D: Dimension>(dim: D, l: &[f64], x: &mut [f6
     }
 }
 
+/// Solves L·Lᵀ·x = b in place, `l` lower triangular: A·x = b for the factor of [`cholesky`].
+#[inline(always)]
+pub(crate) fn solve_factored<D: Dimension>(dim: D, l: &[f64], x: &mut [f64]) {
+    solve_lower(dim, l, x);
+    solve_lower_transpose(dim, l, x);
+}
+
 /// Brings `t` (rows of length `n`, at most `n` of them) to triangular form by reflections from the left, up to the
 /// order of its columns: T ← H·T, so that `TᵀT` is unchanged.
 ///
@@ -212,8 +219,7 @@ mod tests {
         let log_det = cholesky_log_det(Const::<3>, &mut l).expect("positive definite");
         assert!((log_det - 67f64.ln()).abs() < 1e-15, "ln det = {log_det}");
         let mut x = [1.0, 2.0, 3.0];
-        solve_lower(Const::<3>, &l, &mut x);
-        solve_lower_transpose(Const::<3>, &l, &mut x);
+        solve_factored(Const::<3>, &l, &mut x);
         for (row, want) in a.chunks(3).zip([1.0, 2.0, 3.0]) {
             assert!((dot(row, &x) - want).abs() < 1e-14, "residual of row {row:?}");
         }

@@ -160,7 +160,8 @@ fn corners(hull: &ConvexHull, dimension: usize) -> Vec<[u32; 3]> {
     }
 }
 
-/// Of corners that are farther behind the plane of their facet, in ε of the size, nothing is told: they are of slivers.
+/// If corners are farther behind the plane of their facet, in ε of the size, they are of slivers, and nothing is
+/// known.
 const FARTHEST_BEHIND: f64 = 64.0;
 
 /// What is behind all planes by more than this is in the hull. The facets are all that it has, each with its corners

@@ -15,24 +15,25 @@ use crate::{Scalar, Vector};
 /// that a needle's cells are filled as evenly as a ball's. Each cell lists all vertices that are farthest along any
 /// of its directions: with a few cells for each vertex these are a handful, whatever their number.
 ///
-/// Where they are not, as at a corner that is all tiny edges, the cell keeps a vertex to climb from. A corner that no
-/// neighbour is farther along than is farthest of all: its neighbours span the cone that the whole polytope is in. Not
-/// so a vertex in the middle of a facet, whose neighbours are all in its plane: it can be the nearest of all, too. But
-/// a climb begins at a vertex that is farthest along a direction less than 60° away, which that one is not.
+/// If they are more, as at a corner of many tiny edges, the cell keeps a vertex to climb from. If no neighbour of a
+/// corner is farther along the direction than the corner, it is farthest of all: its neighbours span a cone that
+/// contains the whole polytope. This does not hold for a vertex in the middle of a facet, whose neighbours are all in
+/// its plane: it can also be the nearest of all. But a climb begins at a vertex that is farthest along a direction
+/// less than 60° away, which such a nearest vertex is not.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Graph<V: Vector> {
-    /// Sorted by the cell that they are in as seen from the middle, so that neighbours are near in memory too.
+    /// Sorted by their cells, relative to the middle, so that neighbours are near in memory too.
     vertices: Vec<V>,
-    /// Where they were in the list that was given.
+    /// Their places in the list that was given.
     names: Vec<u32>,
     /// The neighbours of vertex `i` are `neighbours[first[i]..first[i + 1]]`.
     first: Vec<u32>,
     neighbours: Vec<u32>,
-    /// The size of the polytope along each axis, in units of the largest: what stretches the cube.
+    /// The size of the polytope along each axis, in units of the largest: it stretches the cube.
     sizes: V,
     /// By face, then row, then column.
     cells: Vec<Cell>,
-    /// Those that did not find a place in their cells.
+    /// The vertices for which there was no place in their cells.
     further: Vec<u32>,
     resolution: usize,
     half_resolution: V::Scalar,
@@ -41,7 +42,7 @@ pub(super) struct Graph<V: Vector> {
 /// The vertices that are farthest along some direction of the cell, those that come first in the list that was given
 /// first.
 ///
-/// Four are always looked at: how many are needed cannot be foreseen, and to guess wrong takes a processor longer.
+/// Four are always tested: how many are needed cannot be predicted, and to guess wrong takes a processor longer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cell {
     /// The first four; where there are fewer, the first again.
@@ -49,7 +50,7 @@ struct Cell {
     rest: Rest,
 }
 
-/// What a cell does not hold itself.
+/// The vertices that a cell does not hold itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rest {
     None,

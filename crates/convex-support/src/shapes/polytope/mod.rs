@@ -63,7 +63,7 @@ pub struct Polytope<V: Vector> {
     rounding: Rounding<V>,
 }
 
-/// The points, without what is kept to search them.
+/// The points, without the data for searching them.
 impl<V: Vector> fmt::Debug for Polytope<V> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Polytope").field("points", &self.points).finish()
@@ -172,14 +172,8 @@ impl<V: Vector> SupportMap for Polytope<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core {
-            origin: self.middle,
-            radius: V::Scalar::ZERO,
-            rolling_radius: V::Scalar::ZERO,
-            extent: self.extent,
-            error: self.rounding.error_length,
-            kind: CoreKind::Polytope,
-        }
+        let exact = Core::exact(CoreKind::Polytope, self.extent);
+        Core { origin: self.middle, error: self.rounding.error_length, ..exact }
     }
 
     #[inline(always)]

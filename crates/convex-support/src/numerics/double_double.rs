@@ -1,36 +1,36 @@
-//! Sums and products with their rounding errors, for the few places where a difference of nearly equal numbers decides.
+//! Numbers of two parts, for the few places where a difference of nearly equal numbers decides.
 //!
 //! A `DoubleDouble` is an unevaluated sum `high + low` with |low| ≤ ulp(high)/2: some 106 bits. Dekker, *A
 //! floating-point technique for extending the available precision*, 1971; Ogita, Rump, Oishi, *Accurate sum and dot
 //! product*, 2005.
 
-use core::ops::{Add, Mul, Neg, Sub};
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
+use super::twofold::two_sum;
 
 /// `high + low`, not rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct DoubleDouble {
-    pub(crate) high: f64,
-    pub(crate) low: f64,
+pub struct DoubleDouble {
+    pub high: f64,
+    pub low: f64,
 }
 
 impl DoubleDouble {
-    pub(crate) const ZERO: Self = Self { high: 0.0, low: 0.0 };
+    pub const ZERO: Self = Self { high: 0.0, low: 0.0 };
 
     /// `a + b` exactly (Knuth's two-sum).
     #[inline]
-    pub(crate) fn sum(a: f64, b: f64) -> Self {
-        let high = a + b;
-        let t = high - a;
-        Self { high, low: (a - (high - t)) + (b - t) }
+    #[must_use]
+    pub fn sum(a: f64, b: f64) -> Self {
+        let [high, low] = two_sum(a, b);
+        Self { high, low }
     }
 
     /// `a·b` exactly, unless a factor exceeds 1e300 (Dekker's product with Veltkamp's splitting: no fused
     /// multiply-add, which baseline x86-64 would have to emulate).
     #[inline]
-    pub(crate) fn product(a: f64, b: f64) -> Self {
+    #[must_use]
+    pub fn product(a: f64, b: f64) -> Self {
         let split = |x: f64| {
             let t = 134_217_729.0 * x; // 2²⁷ + 1
             let high = t - (t - x);
@@ -41,18 +41,11 @@ impl DoubleDouble {
         Self { high, low: ((a1 * b1 - high) + a1 * b2 + a2 * b1) + a2 * b2 }
     }
 
-    /// The quotient by a plain number.
-    #[inline]
-    pub(crate) fn divided_by(self, divisor: f64) -> Self {
-        let first = self.high / divisor;
-        let rest = self - Self::product(first, divisor);
-        Self::sum(first, rest.value() / divisor)
-    }
-
     /// The square root of a number that is not negative.
     #[inline]
-    pub(crate) fn sqrt(self) -> Self {
-        let first = self.high.sqrt();
+    #[must_use]
+    pub fn sqrt(self) -> Self {
+        let first = num_traits::Float::sqrt(self.high);
         if first == 0.0 {
             return Self::ZERO;
         }
@@ -62,7 +55,8 @@ impl DoubleDouble {
 
     /// The nearest plain number.
     #[inline]
-    pub(crate) fn value(self) -> f64 {
+    #[must_use]
+    pub fn value(self) -> f64 {
         self.high + self.low
     }
 }
@@ -119,6 +113,16 @@ impl Mul<f64> for DoubleDouble {
     }
 }
 
+impl Div for DoubleDouble {
+    type Output = Self;
+    #[inline]
+    fn div(self, rhs: Self) -> Self {
+        let first = self.high / rhs.high;
+        let rest = self - rhs * first;
+        Self::sum(first, rest.value() / rhs.high)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::DoubleDouble;
@@ -130,7 +134,7 @@ mod tests {
         let square = DoubleDouble::product(1.0 + f64::EPSILON, 1.0 + f64::EPSILON);
         assert_eq!((square - DoubleDouble::sum(1.0, 2.0 * f64::EPSILON)).value(), tiny);
         // 1/3·3 = 1 to 106 bits
-        let third = DoubleDouble::from(1.0).divided_by(3.0);
+        let third = DoubleDouble::from(1.0) / 3.0.into();
         assert!((third * 3.0 - DoubleDouble::from(1.0)).value().abs() <= tiny, "{third:?}");
     }
 }
