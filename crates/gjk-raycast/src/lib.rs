@@ -70,7 +70,8 @@
 //!
 //! # Features
 //! - `std` (default): square roots and the like by the processor's instructions; without it by the libm crate, for
-//!   `no_std` targets with `alloc`, to the same bits.
+//!   `no_std` targets with `alloc`, to the same bits. With it a thread keeps what its deepest query has allocated, so
+//!   that the next ones allocate nothing.
 //! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
 //!   instead.
 //! - `rayon`: `par_ray_casts`, `Among::par_ray_casts`, `Among::par_pairs_within`, `Among::par_contacts_within` and

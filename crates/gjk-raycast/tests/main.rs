@@ -4,6 +4,7 @@
 
 mod aimed;
 mod algorithm_1;
+mod allocations;
 mod batch;
 mod boxes;
 mod brackets;

@@ -149,7 +149,7 @@ impl<S: Scalar> Reach<S> {
 }
 
 /// Points that a manifold may have.
-type Candidates<S> = SmallVec<[Candidate<S>; 16]>;
+type Candidates<S> = SmallVec<[Candidate<S>; 32]>;
 
 /// The points that it has.
 type Chosen<S> = SmallVec<[Candidate<S>; MAX_POINTS]>;

@@ -16,23 +16,22 @@ const MAX_STEPS: usize = 12;
 const PATIENCE: usize = 2;
 
 /// Newton's method from a direction to the bottom of its basin, on one smooth piece of the boundary or along the fold
-/// between two. `others` are support points near by, one of which may be of the second piece. The bottom, and points
-/// on the way there that differ from the prediction, make the polytope larger as well. A `last` search goes to edges,
-/// too, where pieces without a bottom of their own meet others, which the polytope finds by itself if it goes on.
-/// `None` if a support point is not finite.
+/// between two. `others` are vertices near by, one of which may be of the second piece. The bottom, and what was not
+/// predicted on the way there, make the polytope larger as well. A `last` look goes to edges, too, where pieces
+/// without a bottom of their own meet others, which the polytope comes to by itself if it goes on. `None` where a
+/// support point is not finite.
 pub(super) fn descend<V: Vector>(
     cores: &mut Cores<'_, V>,
     boundary: &mut Boundary<V>,
     mut way: WayOut<V>,
-    others: &[Vertex<V>],
+    others: &[u16],
     options: &SignedDistanceOptions<V>,
     last: bool,
 ) -> Option<WayOut<V>> {
     let mut first = Piece::new(cores, &way.vertex);
     let mut second = None;
-    let other = contradiction(&first, others);
-    if let Some(other) = other {
-        second = Some(first.beside(cores, other));
+    if let Some(other) = contradiction(&first, boundary, others) {
+        second = Some(first.beside(cores, &boundary.vertex(other)));
     }
     let (mut failures, mut stale, mut is_added) = (0, FoldSide::Far, true);
     for _ in 0..MAX_STEPS {
@@ -74,20 +73,22 @@ pub(super) fn descend<V: Vector>(
     Some(way)
 }
 
-/// The support point that is farthest beyond a piece where that piece alone would lead; if it would lead nowhere, the
-/// one with the worst prediction.
-fn contradiction<'v, V: Vector>(piece: &Piece<V>, others: &'v [Vertex<V>]) -> Option<&'v Vertex<V>> {
-    let foretold_worse = others.iter().filter(|vertex| !piece.foretells(vertex));
+/// The support point that is farthest beyond a piece where that piece alone would lead; where it would lead nowhere,
+/// the one that it predicts worst.
+fn contradiction<V: Vector>(piece: &Piece<V>, boundary: &Boundary<V>, others: &[u16]) -> Option<u16> {
     let to = piece.step();
     let excess = |vertex: &Vertex<V>| match to {
         Some(u) => piece.exceeded_by(vertex.point, u),
         None => piece.surprise(vertex),
     };
     let mut most = (V::Scalar::ZERO, None);
-    for vertex in foretold_worse {
-        let excess = excess(vertex);
-        if excess > most.0 {
-            most = (excess, Some(vertex));
+    for &other in others {
+        let vertex = boundary.vertex(other);
+        if !piece.foretells(&vertex) {
+            let excess = excess(&vertex);
+            if excess > most.0 {
+                most = (excess, Some(other));
+            }
         }
     }
     most.1

@@ -1,11 +1,16 @@
 //! The boundary of a polytope that grows point by point.
 
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use core::any::Any;
+
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::cores::Vertex;
 use super::orientation::is_beyond;
+use crate::body::PointPair;
 use crate::double::{Vec3, cross, dot};
 use crate::simplex::{MAX_POINTS, nearest_face};
 
@@ -26,8 +31,9 @@ const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 /// The most facets of a walk to one that a point is beyond.
 const MAX_WALK: usize = 32;
 
-/// The number of further facets for which room is made at a time.
-const ROOM: usize = 28;
+/// Facets that there is room for without an allocation; up to there it is made for so many more than there are.
+const FACETS: usize = 128;
+const MORE: usize = 28;
 
 /// The corner after each, and the one after that.
 const NEXT: [usize; 4] = [1, 2, 0, 1];
@@ -61,29 +67,31 @@ pub(super) struct Facet<V: Vector> {
 /// facet is nearer to zero than `min n·p`.
 #[derive(Debug)]
 pub(super) struct Boundary<V: Vector> {
-    vertices: SmallVec<[Vertex<V>; 64]>,
-    /// The points of the vertices, which are used most.
     points: SmallVec<[V; 64]>,
-    /// For each vertex on the horizon of the last point, the future facet along the ridge that begins there.
-    begins: SmallVec<[u16; 64]>,
-    /// The same for the ridge that ends there.
-    ends: SmallVec<[u16; 64]>,
-    facets: SmallVec<[Facet<V>; 128]>,
-    /// A lower bound on the distance of zero from each facet, negative if zero is beyond it; infinite for a removed
-    /// facet.
-    inner: SmallVec<[V::Scalar; 128]>,
+    /// What else the vertices know, which hardly anything asks for.
+    origins: SmallVec<[Origin<V>; 64]>,
+    /// Of each vertex on the horizon of the last point, the facets that are to be along the ridges that begin and end
+    /// there.
+    ridges: SmallVec<[[u16; 2]; 64]>,
+    facets: SmallVec<[Facet<V>; FACETS]>,
+    /// A lower bound on the distance of zero from each facet, negative where zero is beyond it; infinite for what is no
+    /// facet any more.
+    inner: SmallVec<[V::Scalar; FACETS]>,
     /// The squared sine of the angle between two edges below which a normal is computed with more care.
     acute: f64,
     insertions: u32,
     /// A facet at the last point.
     last: usize,
-    /// The facets that the last point was beyond, and their replacements, in the beginning of these.
-    seen: SmallVec<[u16; 256]>,
-    fresh: SmallVec<[Fresh; 256]>,
+    /// The facets that the last point was beyond, and those that take their place, in the beginning of these.
+    seen: SmallVec<[u16; FACETS]>,
+    fresh: SmallVec<[Fresh; FACETS]>,
 }
 
-/// A future facet, between the new vertex and a ridge of the horizon. Its corners are the new vertex and the ridge's,
-/// in this order; in 2D the ridge is one vertex.
+/// The direction that a vertex was found along, and the points of both cores that it is made of.
+type Origin<V> = (V, PointPair<V>);
+
+/// A facet that is to be, between the new vertex and a ridge of the horizon. Its corners are the new vertex and the
+/// ridge's, in this order; in 2D the ridge is one vertex.
 #[derive(Clone, Copy, Debug)]
 struct Fresh {
     ridge: [u16; MAX_CORNERS - 1],
@@ -94,16 +102,54 @@ struct Fresh {
     is_second: bool,
 }
 
+#[cfg(feature = "std")]
+std::thread_local! {
+    /// Polytopes that have outgrown their room, of any type of vectors.
+    static OUTGROWN: core::cell::RefCell<Vec<Box<dyn Any>>> = const { core::cell::RefCell::new(Vec::new()) };
+}
+
+/// Acts on the polytopes that this thread keeps. Without the standard library none does.
+fn with_outgrown<R>(act: impl FnOnce(&mut Vec<Box<dyn Any>>) -> R) -> Option<R> {
+    #[cfg(feature = "std")]
+    return OUTGROWN.try_with(|kept| act(&mut kept.borrow_mut())).ok();
+    #[cfg(not(feature = "std"))]
+    {
+        let _ = act;
+        None
+    }
+}
+
 impl<V: Vector> Boundary<V> {
-    /// An empty polytope. The distances of its facets are computed to `accuracy`, relative to its size, or as well as
-    /// possible.
+    /// Lends a search what [`new`](Self::new) makes. If that outgrows its room, the thread keeps it with all that it has
+    /// allocated, and lends it to the next search. So only a search that needs more than any before it allocates. One
+    /// that is asked within another, by a support map, has a polytope of its own.
+    pub(super) fn lend<R>(accuracy: f64, search: impl FnOnce(&mut Self) -> R) -> R {
+        // In its place from the beginning: it is a large object to move.
+        let mut own = Self::new(accuracy);
+        let kept = with_outgrown(|all| Some(all.swap_remove(all.iter().position(|kept| kept.is::<Self>())?)));
+        let mut kept: Option<Box<Self>> = kept.flatten().and_then(|kept| kept.downcast().ok());
+        if let Some(kept) = &mut kept {
+            kept.clear();
+            kept.acute = own.acute;
+        }
+        let found = search(kept.as_deref_mut().unwrap_or(&mut own));
+        if cfg!(feature = "std") && (own.points.spilled() || own.seen.spilled()) {
+            kept = Some(Box::new(own));
+        }
+        if let Some(kept) = kept {
+            let _ = with_outgrown(|all| all.push(kept));
+        }
+        found
+    }
+
+    /// No polytope yet. The distances of its facets are to be known to `accuracy`, relative to its size, or as well as
+    /// may be.
     pub(super) fn new(accuracy: f64) -> Self {
         let acute = (ROUNDING / accuracy).min(ACUTE);
         Self {
-            vertices: SmallVec::new(),
             points: SmallVec::new(),
-            begins: SmallVec::new(),
-            ends: SmallVec::new(),
+            origins: SmallVec::new(),
+            ridges: SmallVec::new(),
             facets: SmallVec::new(),
             inner: SmallVec::new(),
             acute: acute * acute,
@@ -135,8 +181,8 @@ impl<V: Vector> Boundary<V> {
             self.push(vertex);
         }
         if is_turned {
-            self.vertices.swap(0, 1);
             self.points.swap(0, 1);
+            self.origins.swap(0, 1);
         }
         for (&corners, opposite) in faces.iter().zip(0..) {
             let (facet, inner) = Facet::new(&self.points, corners, corners, self.acute);
@@ -155,19 +201,18 @@ impl<V: Vector> Boundary<V> {
     /// Empties the polytope.
     #[cold]
     fn clear(&mut self) {
-        self.vertices.clear();
         self.points.clear();
-        self.begins.clear();
-        self.ends.clear();
+        self.origins.clear();
+        self.ridges.clear();
         self.facets.clear();
         self.inner.clear();
+        (self.insertions, self.last) = (0, 0);
     }
 
-    fn push(&mut self, vertex: &Vertex<V>) {
-        self.vertices.push(*vertex);
-        self.points.push(vertex.point);
-        self.begins.push(NONE);
-        self.ends.push(NONE);
+    fn push(&mut self, &Vertex { point, along, pair }: &Vertex<V>) {
+        self.points.push(point);
+        self.origins.push((along, pair));
+        self.ridges.push([NONE; 2]);
     }
 
     /// The facet whose plane comes nearest to zero, or that zero is farthest beyond, and its bound.
@@ -184,17 +229,25 @@ impl<V: Vector> Boundary<V> {
             }
         }
         let least = lanes.iter().chain(rest).fold(infinity, |least, &inner| if inner < least { inner } else { least });
-        (inner.iter().position(|&inner| inner == least).unwrap_or(0), least)
+        let before = 4 * fours.iter().take_while(|four| !four.iter().fold(false, |is, &x| is | (x == least))).count();
+        (inner[before..].iter().position(|&inner| inner == least).map_or(0, |index| before + index), least)
     }
 
     pub(super) fn facet_at(&self, index: usize) -> &Facet<V> {
         &self.facets[index]
     }
 
-    /// The vertices of a facet.
-    pub(super) fn corners(&self, index: usize) -> [Vertex<V>; MAX_CORNERS] {
-        let corners = self.facets[index].corners;
-        core::array::from_fn(|i| self.vertices[usize::from(corners[i.min(V::DIM - 1)])])
+    /// The corners of a facet, of which there are as many as dimensions.
+    #[inline]
+    pub(super) fn corners(&self, index: usize) -> [u16; MAX_CORNERS] {
+        self.facets[index].corners
+    }
+
+    /// The vertex at a corner.
+    #[inline]
+    pub(super) fn vertex(&self, corner: u16) -> Vertex<V> {
+        let (along, pair) = self.origins[usize::from(corner)];
+        Vertex { point: self.points[usize::from(corner)], along, pair }
     }
 
     /// The points of the vertices of a facet.
@@ -296,7 +349,7 @@ impl<V: Vector> Boundary<V> {
     /// Adds a point beyond the given facet. `false`, and nothing is changed, if it is not beyond it, or there are too
     /// many.
     pub(super) fn insert(&mut self, facet: usize, vertex: &Vertex<V>) -> bool {
-        let is_full = self.vertices.len() >= usize::from(NONE / 4);
+        let is_full = self.points.len() >= usize::from(NONE / 4);
         if is_full || !is_seen(&self.facets[facet], &self.points, vertex.point) {
             return false;
         }
@@ -311,8 +364,9 @@ impl<V: Vector> Boundary<V> {
         // facets before it.
         let room = self.facets.len() + 2;
         if self.seen.len() < room {
-            self.seen.resize(room + ROOM, NONE);
-            self.fresh.resize(room + ROOM, Fresh { ridge: [NONE; 2], outer: NONE, back: 0, is_second: false });
+            let room = room.max(FACETS.min(room + MORE));
+            self.seen.resize(room, NONE);
+            self.fresh.resize(room, Fresh { ridge: [NONE; 2], outer: NONE, back: 0, is_second: false });
         }
         self.insertions += 2;
         let round = self.insertions;
@@ -355,7 +409,7 @@ impl<V: Vector> Boundary<V> {
         if !self.is_cycle(count) {
             return false;
         }
-        let apex = self.vertices.len() as u16;
+        let apex = self.points.len() as u16;
         self.push(vertex);
         for k in seen..count {
             self.seen[k] = self.facets.len() as u16;
@@ -364,7 +418,7 @@ impl<V: Vector> Boundary<V> {
         }
         let (fresh, places, points) = (&self.fresh[..count], &self.seen[..seen.max(count)], self.points.as_slice());
         let (facets, inner) = (self.facets.as_mut_slice(), self.inner.as_mut_slice());
-        let (begins, ends) = (self.begins.as_slice(), self.ends.as_slice());
+        let ridges = self.ridges.as_slice();
         let acute = self.acute;
         for (k, new) in fresh.iter().enumerate() {
             let [from, to] = new.ridge;
@@ -372,7 +426,7 @@ impl<V: Vector> Boundary<V> {
                 let (corners, across) = ([apex, from, NONE], [new.outer, places[1 - k], NONE]);
                 if new.is_second { ([from, apex, NONE], [across[1], across[0], NONE]) } else { (corners, across) }
             } else {
-                let (next, last) = (begins[usize::from(to)], ends[usize::from(from)]);
+                let (next, last) = (ridges[usize::from(to)][0], ridges[usize::from(from)][1]);
                 ([apex, from, to], [new.outer, places[usize::from(next)], places[usize::from(last)]])
             };
             let index = places[k];
@@ -388,19 +442,21 @@ impl<V: Vector> Boundary<V> {
 
     /// Finds which of the new facets begin and end at each vertex of the horizon; whether that is one each.
     fn is_cycle(&mut self, count: usize) -> bool {
-        let (fresh, begins, ends) = (&self.fresh[..count], self.begins.as_mut_slice(), self.ends.as_mut_slice());
+        let (fresh, ridges) = (&self.fresh[..count], self.ridges.as_mut_slice());
         if V::DIM == 2 {
             return count == 2;
         }
         for (k, new) in fresh.iter().enumerate() {
-            begins[usize::from(new.ridge[0])] = k as u16;
-            ends[usize::from(new.ridge[1])] = k as u16;
+            ridges[usize::from(new.ridge[0])][0] = k as u16;
+            ridges[usize::from(new.ridge[1])][1] = k as u16;
         }
         // If two began at one vertex, the first of them is not the one recorded there.
         fresh.iter().enumerate().all(|(k, new)| {
             let (from, to) = (usize::from(new.ridge[0]), usize::from(new.ridge[1]));
-            let next = fresh.get(usize::from(begins[to]));
-            begins[from] == k as u16 && ends[to] == k as u16 && next.is_some_and(|next| next.ridge[0] == new.ridge[1])
+            let next = fresh.get(usize::from(ridges[to][0]));
+            ridges[from][0] == k as u16
+                && ridges[to][1] == k as u16
+                && next.is_some_and(|next| next.ridge[0] == new.ridge[1])
         })
     }
 }

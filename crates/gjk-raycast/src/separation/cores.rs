@@ -461,9 +461,14 @@ impl<'a, V: Vector> Cores<'a, V> {
 
     /// The point of the difference nearest to a `target`, as seen from there: that of the face with these corners, and
     /// where it is farther than rounding, the one that GJK comes to from there.
-    pub(super) fn nearest_to(&mut self, target: V, corners: &[Vertex<V>], max_iterations: usize) -> Gjk<V> {
+    pub(super) fn nearest_to(
+        &mut self,
+        target: V,
+        corners: impl Iterator<Item = Vertex<V>>,
+        max_iterations: usize,
+    ) -> Gjk<V> {
         let mut state = Gjk::new(target);
-        for &Vertex { point, along, pair } in corners {
+        for Vertex { point, along, pair } in corners {
             state.simplex.push(point - target, along, pair);
         }
         state.ensure_measured();

@@ -5,7 +5,7 @@ use num_traits::Float as _;
 
 use super::basin;
 use super::boundary::Boundary;
-use super::cores::{Cores, Vertex, WayOut};
+use super::cores::{Cores, WayOut};
 use super::first_polytope::{FirstPolytope, first_polytope};
 use super::met::MetPoint;
 use super::witness::{self, Ends};
@@ -81,12 +81,24 @@ pub(super) fn expand<V: Vector>(
     options: &SignedDistanceOptions<V>,
     observer: &mut Observer<'_, V>,
 ) -> Option<Expanded<V>> {
+    let relative = if cores.is_curved() { options.tolerance } else { Scalar::ZERO };
+    Boundary::lend(relative.max(Scalar::EPSILON).as_f64(), |boundary| {
+        expand_within(boundary, relative * cores.size, cores, state, options, observer)
+    })
+}
+
+/// [`expand`] until the bracket is as narrow as the tolerance, by a polytope that there is none of yet.
+#[inline(always)]
+fn expand_within<V: Vector>(
+    boundary: &mut Boundary<V>,
+    tolerance: V::Scalar,
+    cores: &mut Cores<'_, V>,
+    state: &mut Gjk<V>,
+    options: &SignedDistanceOptions<V>,
+    observer: &mut Observer<'_, V>,
+) -> Option<Expanded<V>> {
     let is_curved = cores.is_curved();
-    let relative = if is_curved { options.tolerance } else { Scalar::ZERO };
-    let tolerance = relative * cores.size;
-    // In its place from the beginning: it is a large object to move.
-    let mut boundary = Boundary::new(relative.max(Scalar::EPSILON).as_f64());
-    let way = match first_polytope(cores, state, &mut boundary)? {
+    let way = match first_polytope(cores, state, boundary)? {
         FirstPolytope::Flat(way) => return Some(flat(way, MetPoint::new(cores, state))),
         FirstPolytope::Full(way) => way,
     };
@@ -108,7 +120,7 @@ pub(super) fn expand<V: Vector>(
                 // Perhaps no step was taken towards the bottom yet.
                 Closing::First => {
                     let corners = boundary.corners(nearest);
-                    expansion.descend(cores, &mut boundary, &corners, options)?;
+                    expansion.descend(cores, boundary, &corners[..V::DIM], options)?;
                     continue;
                 }
                 Closing::Again => {}
@@ -122,7 +134,7 @@ pub(super) fn expand<V: Vector>(
         if cores.iterations >= options.max_iterations {
             break Status::IterationLimit;
         }
-        if !expansion.grow(cores, &mut boundary, nearest, inner, options, observer)? {
+        if !expansion.grow(cores, boundary, nearest, inner, options, observer)? {
             break Status::Stalled;
         }
     };
@@ -130,7 +142,7 @@ pub(super) fn expand<V: Vector>(
     let status = if closed.is_some() { Status::Converged } else { status };
     // A question only about a limit of the depth needs no better points.
     let for_ends = if is_deep { 0 } else { options.max_iterations + options.max_iterations / FOR_ENDS };
-    Some(settled(cores, state, &boundary, way, met, status, for_ends))
+    Some(settled(cores, state, boundary, way, met, status, for_ends))
 }
 
 /// The state of an expansion beside its polytope.
@@ -182,15 +194,15 @@ impl<V: Vector> Expansion<V> {
         }
     }
 
-    /// Goes to the bottom of the basin that the way is in, beside a facet with these corners.
+    /// Goes to the bottom of the basin that the way is in, beside a facet that has or had these corners.
     fn descend(
         &mut self,
         cores: &mut Cores<'_, V>,
         boundary: &mut Boundary<V>,
-        corners: &[Vertex<V>],
+        corners: &[u16],
         options: &SignedDistanceOptions<V>,
     ) -> Option<()> {
-        let way = basin::descend(cores, boundary, self.way, &corners[..V::DIM], options, self.closed.is_some())?;
+        let way = basin::descend(cores, boundary, self.way, corners, options, self.closed.is_some())?;
         self.take(cores, way);
         Some(())
     }
@@ -225,8 +237,7 @@ impl<V: Vector> Expansion<V> {
         if self.closed.is_none() && self.is_closed(inner) {
             return Some(true);
         }
-        let descends = self.is_curved && seen.h == self.way.h;
-        let corners = descends.then(|| boundary.corners(nearest));
+        let corners = boundary.corners(nearest);
         if !boundary.insert(nearest, &vertex) {
             // The support point along its own normal is beyond any facet that is not of the boundary.
             if self.may_lean && direction != normal {
@@ -237,8 +248,8 @@ impl<V: Vector> Expansion<V> {
             return Some(boundary.measure(nearest));
         }
         self.may_lean = self.is_curved;
-        if let Some(corners) = corners {
-            self.descend(cores, boundary, &corners, options)?;
+        if self.is_curved && seen.h == self.way.h {
+            self.descend(cores, boundary, &corners[..V::DIM], options)?;
         }
         Some(true)
     }

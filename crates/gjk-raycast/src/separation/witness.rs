@@ -93,7 +93,7 @@ pub(super) fn nearest_to<V: Vector>(
     max_iterations: usize,
 ) -> Gjk<V> {
     let corners = boundary.corners(beside(boundary, from, target));
-    cores.nearest_to(target, &corners[..V::DIM], max_iterations)
+    cores.nearest_to(target, corners[..V::DIM].iter().map(|&corner| boundary.vertex(corner)), max_iterations)
 }
 
 /// The facet that a point is above, or nearly above: the next one across the ridges that the point's projection is
