@@ -128,6 +128,8 @@ struct Travelled<'o, V: Vector> {
     proved: V::Scalar,
     /// The unit normal of the plane.
     normal: Option<V>,
+    /// That of the first plane after it that the ray runs along, as far as rounding lets one know.
+    along: Option<V>,
 }
 
 enum Step<V: Vector> {
@@ -160,6 +162,7 @@ impl<'o, V: Vector> Travelled<'o, V> {
             crossing: begin,
             proved: begin,
             normal: None,
+            along: None,
         }
     }
 
@@ -210,6 +213,7 @@ impl<'o, V: Vector> Travelled<'o, V> {
         }
         self.crossing = if approaches { self.mu - length / slope } else { next };
         self.mu = next;
+        self.along = if approaches { None } else { self.along.or(Some(n)) };
         self.normal = self.normal.filter(|_| !approaches).or(Some(n));
         Step::Advances
     }
@@ -220,6 +224,10 @@ impl<'o, V: Vector> Travelled<'o, V> {
     /// At a place `x` of the ray, the points `x ± ρ·eᵢ` along the `n` axes are tested. If each is in the set to two
     /// noises `ν`, with an error of one, then points of the set are no farther than `3ν` from them, and their hull has
     /// a ball about `x` of radius `ρ/√n − 3ν`: for `ρ = 8ν` more than the `ν` that `x` is off the ray.
+    ///
+    /// Closest points may be computed from larger coordinates than theirs, such as the position of a body that contains
+    /// the origin. So where two tests fail, the next ones take half of what a point seems to be outside for `ν`, as far
+    /// as the ray should be four times `ρ` behind the plane there.
     fn latest_entry(
         &self,
         noise: V::Scalar,
@@ -232,10 +240,11 @@ impl<'o, V: Vector> Travelled<'o, V> {
         // At once for a ray that begins in the set; from a plane on, where it is as far behind that as the points are
         // around it.
         let mut step = if self.normal.is_some() { noise * number(8.0) / slope } else { V::Scalar::ZERO };
+        let mut noise = noise;
         for _ in 0..LOOKS {
             let mu = self.crossing + step;
             let x = if mu <= self.local.start { self.ray.source } else { self.at(mu) };
-            let noise = noise.max(self.noise(x, x));
+            noise = noise.max(self.noise(x, x));
             let around = noise * number(8.0);
             let mut is_around = true;
             for i in 0..2 * V::DIM {
@@ -246,8 +255,10 @@ impl<'o, V: Vector> Travelled<'o, V> {
                 let side = if i < V::DIM { around } else { -around };
                 let y = x + V::axis(i % V::DIM) * (side * self.scale);
                 // NaN is not in the set.
-                is_around = (y - closest_point(y)?).norm() / self.scale <= noise + noise;
+                let outside = (y - closest_point(y)?).norm() / self.scale;
+                is_around = outside <= noise + noise;
                 if !is_around {
+                    noise = noise.max((outside * number(0.5)).min(step * slope * number(0.125)));
                     break;
                 }
             }
@@ -266,7 +277,7 @@ impl<'o, V: Vector> Travelled<'o, V> {
         let (lower, is_at_start) = (self.lower(), self.mu <= self.begin);
         let lambda = if is_at_start { self.least } else { self.local.lambda(self.crossing).max(self.least) };
         if lambda > self.options.max_lambda {
-            let outcome = Outcome::Miss(Miss { axis: self.normal.unwrap_or(-self.local.line.direction) });
+            let outcome = self.miss(self.along.or(self.normal).unwrap_or(-self.local.line.direction));
             return RayCast { outcome, lower, upper: infinity, status: Status::Converged, iterations };
         }
         let point = if lambda > zero { self.at(self.crossing) } else { self.ray.source };
@@ -278,10 +289,13 @@ impl<'o, V: Vector> Travelled<'o, V> {
         RayCast { outcome, lower, upper, status, iterations }
     }
 
-    /// The answer if the plane across `n` through x's closest point has the rest of the ray before it.
+    /// The answer if the plane across `n` through x's closest point has the rest of the ray before it, or all of it.
     fn miss(&self, n: V) -> Outcome<RayHit<V>, V> {
-        // Together with the plane before x, the axis has the whole ray before it: across the ray, both count.
         let direction = self.local.line.direction;
+        // After a plane that the ray runs along, x is farther on than the planes are certain to prove, and only the rest
+        // of the ray from x on need be before a later one. The first has all of the rest before it.
+        let n = self.along.filter(|_| n.dot(direction) > V::Scalar::ZERO).unwrap_or(n);
+        // Together with the plane before x, the axis has the whole ray before it: across the ray, both count.
         let slope = n.dot(direction);
         let last = self.normal.filter(|_| slope > V::Scalar::ZERO);
         let axis = last.and_then(|m| (m * slope - n * m.dot(direction)).unit()).unwrap_or(n);
