@@ -22,17 +22,16 @@ pub(super) fn times<V: Vector>(points: PointPair<V>, factor: V::Scalar) -> Point
 }
 
 impl<V: Vector> MovingPair<'_, V> {
-    /// The pair at a time, by GJK; `None` where the bodies are nearly in contact, or overlap and nobody can tell by how
-    /// much.
+    /// The pair at a time, by GJK; `None` if the bodies are nearly in contact, or overlap by an unknown depth.
     ///
-    /// It begins with the face that was closest at the last time, which mostly is so still, so that one support point
-    /// ends it. Where the bodies overlap by more than rounding, the best plane known tells about how much, which is all
-    /// that the search needs.
+    /// The search begins with the face that was closest at the last time. Mostly it still is, and one support point ends
+    /// the search. If the bodies overlap by more than rounding, the best plane known tells roughly how deep, which is
+    /// enough for the search of the motion.
     pub(super) fn roughly(&self, placed: &Placed<'_, V>, axis: V, limit: V::Scalar) -> Option<Instant<V>> {
         let pair = &mut Pair::new(placed);
         let size = pair.size(placed.offset);
         let kept = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
-        // Where the cores have passed through one another, it is the other way round.
+        // If the cores have passed through one another, the vector to it is turned round.
         let face = kept.filter(|face| face.v.dot(axis) > Scalar::ZERO && face.v.length() > pair.radius());
         let frame = Frame::new(pair, placed.offset, size);
         let Frame { scale, per_unit, radius, error, .. } = frame;
