@@ -36,9 +36,7 @@ fn hull(count: u32) -> Polytope<DVec3> {
 /// A prism over a regular polygon of so many sides.
 fn prism(sides: u32) -> Polytope<DVec3> {
     let corner = |k: u32| {
-        DVec3::from(
-            (DQuat::from_rotation_z(TAU * f64::from(k / 2) / f64::from(sides)) * DVec3::X).with_z(f64::from(k % 2)),
-        )
+        (DQuat::from_rotation_z(TAU * f64::from(k / 2) / f64::from(sides)) * DVec3::X).with_z(f64::from(k % 2))
     };
     Polytope::new((0..2 * sides).map(corner)).expect("finite points")
 }
