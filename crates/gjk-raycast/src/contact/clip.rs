@@ -3,7 +3,7 @@
 use convex_support::Scalar;
 use smallvec::SmallVec;
 
-use super::outline::{ContactPart, Corner, Outline};
+use super::outline::{ContactPart, Corner, Outline, ROOM};
 use crate::symmetric::{Across, cross, dot, scaled, sum, way};
 
 /// A corner of the overlap, and the part of the clipped outline and of the other one that it is on.
@@ -24,7 +24,7 @@ enum Edge {
 }
 
 /// The corners of an overlap.
-pub(crate) type ClippedCorners<S> = SmallVec<[Clipped<S>; 32]>;
+pub(crate) type ClippedCorners<S> = SmallVec<[Clipped<S>; ROOM]>;
 
 /// The overlap of two outlines by the method of Sutherland and Hodgman: the first is cut along each edge of the second.
 /// A segment is clipped by a polygon, and two parallel segments by each other. It is empty if there is none. An outline

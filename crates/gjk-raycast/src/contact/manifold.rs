@@ -5,7 +5,7 @@ use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::clip::{ClippedCorners, clip};
-use super::outline::{ContactPart, ContactPlane, Outline};
+use super::outline::{ContactPart, ContactPlane, Outline, ROOM};
 use super::reduction::{Candidate, Rank, WORTHWHILE, reduced};
 use super::result::MAX_POINTS;
 use super::surface::{MAX_SUPPORT_POINTS, Side, Surface};
@@ -149,7 +149,7 @@ impl<S: Scalar> Reach<S> {
 }
 
 /// Points that a manifold may have.
-type Candidates<S> = SmallVec<[Candidate<S>; 32]>;
+type Candidates<S> = SmallVec<[Candidate<S>; ROOM]>;
 
 /// The points that it has.
 type Chosen<S> = SmallVec<[Candidate<S>; MAX_POINTS]>;

@@ -7,6 +7,9 @@ use smallvec::SmallVec;
 
 use crate::symmetric::{Across, cross, dot, way};
 
+/// The corners that two features of 16 points may have in common. There is room for them without an allocation.
+pub(crate) const ROOM: usize = 32;
+
 /// The part of one shape that a point of contact is on: a corner of its feature, an edge, or the face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ContactPart {
@@ -64,7 +67,7 @@ pub(crate) struct Corner<S> {
 /// above it.
 #[derive(Clone, Debug)]
 pub(crate) struct Outline<S: Scalar> {
-    pub(crate) corners: SmallVec<[Corner<S>; 32]>,
+    pub(crate) corners: SmallVec<[Corner<S>; ROOM]>,
     /// The ellipse that the corners are on, where the feature is a disc.
     pub(crate) rim: Option<Ellipse<S>>,
     /// Whether the corners or the rim are all of the feature.
@@ -142,7 +145,7 @@ pub(super) fn spread<S: Scalar>((x, y): Across<S>) -> S {
 ///
 /// After Andrew: the points are taken in their order along a long way through the hull, and those that turn inwards are
 /// dropped, on the way there and on the way back.
-pub(super) fn wrap<S: Scalar>(points: &mut [Corner<S>], noise: S, corners: &mut SmallVec<[Corner<S>; 32]>) {
+pub(super) fn wrap<S: Scalar>(points: &mut [Corner<S>], noise: S, corners: &mut SmallVec<[Corner<S>; ROOM]>) {
     let edge = |a: &Corner<S>, b: &Corner<S>| way(a.at, b.at);
     let Some(&first) = points.first() else { return };
     let longer = |way: Across<S>, e: Across<S>| if dot(e, e) > dot(way, way) { e } else { way };

@@ -3,6 +3,7 @@
 use convex_support::Scalar;
 use smallvec::SmallVec;
 
+use super::outline::ROOM;
 use super::result::MAX_POINTS;
 use crate::symmetric::{Across, cross, way};
 
@@ -55,46 +56,55 @@ pub(super) fn reduced<S: Scalar>(
 fn spanning<S: Scalar>(polygon: &[Candidate<S>], margin: f64, rank: impl Fn(usize) -> Rank) -> [usize; 4] {
     let count = polygon.len();
     // Twice around.
-    let at: SmallVec<[Across<S>; 64]> = polygon.iter().chain(polygon).map(|corner| corner.at).collect();
-    let ranks: SmallVec<[Rank; 32]> = (0..count).map(rank).collect();
+    let at: SmallVec<[Across<S>; 2 * ROOM]> = polygon.iter().chain(polygon).map(|corner| corner.at).collect();
+    let ranks: SmallVec<[Rank; ROOM]> = (0..count).map(rank).collect();
     let twice = |i: usize, j: usize, k: usize| cross(way(at[i], at[j]), way(at[i], at[k]));
-    let for_each_diagonal = |see: &mut dyn FnMut(usize, usize, S, S)| {
-        for i in 0..count - 2 {
-            let (mut j, mut l) = (i + 1, i + 3);
-            for k in i + 2..count.min(i + count - 1) {
-                let mut right = twice(i, j, k);
-                while j + 1 < k && twice(i, j + 1, k) >= right {
-                    j += 1;
-                    right = twice(i, j, k);
-                }
-                l = l.max(k + 1);
-                let mut left = twice(k, l, i);
-                while l + 1 < i + count && twice(k, l + 1, i) >= left {
-                    l += 1;
-                    left = twice(k, l, i);
-                }
-                see(i, k, right, left);
-            }
-        }
-    };
+    let lost = |most: S| most * S::from_f64(margin);
+    // Only diagonals that may still be good enough are kept, for which there is room.
+    let mut diagonals: SmallVec<[_; 4 * ROOM]> = SmallVec::new();
     let mut most = S::ZERO;
-    for_each_diagonal(&mut |_, _, right, left| most = most.max(right + left));
-    let lost = most * S::from_f64(margin);
+    for i in 0..count - 2 {
+        let (mut j, mut l) = (i + 1, i + 3);
+        for k in i + 2..count.min(i + count - 1) {
+            let mut right = twice(i, j, k);
+            while j + 1 < k && twice(i, j + 1, k) >= right {
+                j += 1;
+                right = twice(i, j, k);
+            }
+            l = l.max(k + 1);
+            let mut left = twice(k, l, i);
+            while l + 1 < i + count && twice(k, l + 1, i) >= left {
+                l += 1;
+                left = twice(k, l, i);
+            }
+            most = most.max(right + left);
+            let least = most - lost(most);
+            // NaN is kept.
+            if right + left < least {
+                continue;
+            }
+            if diagonals.len() == diagonals.inline_size() {
+                diagonals.retain(|&mut (_, _, right, left)| !(right + left < least));
+            }
+            diagonals.push((i, k, right, left));
+        }
+    }
+    let lost = lost(most);
     let mut best: Option<([Rank; 4], [usize; 4])> = None;
-    for_each_diagonal(&mut |i, k, right, left| {
+    for (i, k, right, left) in diagonals {
         if right + left < most - lost {
-            return;
+            continue;
         }
         let j = (i + 1..k).filter(|&j| twice(i, j, k) >= right - lost).min_by_key(|&j| ranks[j]);
         let l = (k + 1..i + count).filter(|&l| twice(k, l, i) >= left - lost).min_by_key(|&l| ranks[l % count]);
-        let (Some(j), Some(l)) = (j, l) else { return };
+        let (Some(j), Some(l)) = (j, l) else { continue };
         let corners = [i, k, j, l % count];
         let mut least = corners.map(|i| ranks[i]);
         least.sort_unstable();
         if best.is_none_or(|(known, _)| least < known) {
             best = Some((least, corners));
         }
-    });
+    }
     best.map_or([0, 2, 1, 3], |(_, corners)| corners)
 }
 
