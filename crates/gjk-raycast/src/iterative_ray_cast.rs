@@ -230,7 +230,7 @@ impl<'o, V: Vector> Travelled<'o, V> {
     /// as the ray should be four times `ρ` behind the plane there.
     fn latest_entry(
         &self,
-        noise: V::Scalar,
+        mut noise: V::Scalar,
         closest_point: &mut impl FnMut(V) -> Result<V, RayCastError>,
         iterations: &mut usize,
     ) -> Result<V::Scalar, RayCastError> {
@@ -240,7 +240,6 @@ impl<'o, V: Vector> Travelled<'o, V> {
         // At once for a ray that begins in the set; from a plane on, where it is as far behind that as the points are
         // around it.
         let mut step = if self.normal.is_some() { noise * number(8.0) / slope } else { V::Scalar::ZERO };
-        let mut noise = noise;
         for _ in 0..LOOKS {
             let mu = self.crossing + step;
             let x = if mu <= self.local.start { self.ray.source } else { self.at(mu) };
@@ -292,8 +291,8 @@ impl<'o, V: Vector> Travelled<'o, V> {
     /// The answer if the plane across `n` through x's closest point has the rest of the ray before it, or all of it.
     fn miss(&self, n: V) -> Outcome<RayHit<V>, V> {
         let direction = self.local.line.direction;
-        // After a plane that the ray runs along, x is farther on than the planes are certain to prove, and only the rest
-        // of the ray from x on need be before a later one. The first has all of the rest before it.
+        // After a plane that the ray runs along, x is farther on than the planes are certain to prove, and only the
+        // rest of the ray from x on need be before a later one. The first has all of the rest before it.
         let n = self.along.filter(|_| n.dot(direction) > V::Scalar::ZERO).unwrap_or(n);
         // Together with the plane before x, the axis has the whole ray before it: across the ray, both count.
         let slope = n.dot(direction);

@@ -18,8 +18,8 @@ const MAX_ITERATIONS: usize = 200;
 /// The cap bounds the time for ties, such as an ellipsoid of revolution within another about the same axis.
 const MAX_DEPTH_ITERATIONS: usize = 500;
 
-/// Times to examine in a motion cast, after which to give up. A contact takes about ten, and each turn near another body
-/// about as many; bodies that spin for long very near one another take the most.
+/// Times to examine in a motion cast, after which to give up. A contact takes about ten, and each turn near another
+/// body about as many; bodies that spin for long very near one another take the most.
 const MAX_LOOKS: usize = 10_000;
 
 /// The methods `with_…` of options. Each sets the field of its argument's name, unless another field is given.
@@ -419,7 +419,7 @@ impl<V: Vector> MotionCastOptions<V> {
         with_axis(axis: V => axis = Some(axis)), with_max_iterations(max_iterations: usize)
     }
 
-    /// The same for a motion that does not turn, but for what they name.
+    /// The options of the linear cast for a motion that does not turn, without the machine code they name.
     pub(crate) fn straight(&self) -> LinearCastOptions<V> {
         let &Self { max_time, tolerance, target_distance, start_in_contact, axis, max_iterations, .. } = self;
         let warm_start = axis.map(WarmStart::new);

@@ -208,8 +208,8 @@ fn end_of<V: Vector>(cast: &MotionCast<V>) -> V::Scalar {
     if cast.outcome.is_undecided() { cast.lower } else { cast.upper }
 }
 
-/// The contact at the end of an edge, if that is [open](is_open_at_end) and `next` is the first contact on the next edge:
-/// if that edge begins in contact, or comes to a contact at once, the contact is certain, at the waypoint.
+/// The contact at the end of an edge, if that is [open](is_open_at_end) and `next` is the first contact on the next
+/// edge: if that edge begins in contact, or comes to a contact at once, the contact is certain, at the waypoint.
 fn goes_on<V: Vector>(open: PathContact<V>, next: Option<PathContact<V>>) -> PathContact<V> {
     let is_at_once = |cast: &MotionCast<V>| cast.is_certain() && cast.upper < at_waypoint();
     let Some(mut next) = next.filter(|next| is_at_once(&next.cast)) else { return open };

@@ -24,9 +24,9 @@ pub(super) fn times<V: Vector>(points: PointPair<V>, factor: V::Scalar) -> Point
 impl<V: Vector> MovingPair<'_, V> {
     /// The pair at a time, by GJK; `None` if the bodies are nearly in contact, or overlap by an unknown depth.
     ///
-    /// The search begins with the face that was closest at the last time. Mostly it still is, and one support point ends
-    /// the search. If the bodies overlap by more than rounding, the best plane known tells roughly how deep, which is
-    /// enough for the search of the motion.
+    /// The search begins with the face that was closest at the last time. Mostly it still is, and one support point
+    /// ends the search. If the bodies overlap by more than rounding, the best plane known tells roughly how deep, which
+    /// is enough for the search of the motion.
     pub(super) fn roughly(&self, placed: &Placed<'_, V>, axis: V, limit: V::Scalar) -> Option<Instant<V>> {
         let pair = &mut Pair::new(placed);
         let size = pair.size(placed.offset);

@@ -238,8 +238,8 @@ impl<S: SupportMap> Among<'_, S> {
         Ok(SceneHits { undecided, work })
     }
 
-    /// The first hit of all bodies that `bound` does not leave out; `ask` makes the single cast, and `value` is the λ or
-    /// the time of a hit.
+    /// The first hit of all bodies that `bound` does not leave out; `ask` makes the single cast, and `value` is the λ
+    /// or the time of a hit.
     ///
     /// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, which is impossible if
     /// the hit's bracket is closed. Keys, and all values kept here, are minima over bodies, without those that their

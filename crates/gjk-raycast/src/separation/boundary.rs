@@ -120,9 +120,9 @@ fn with_outgrown<R>(act: impl FnOnce(&mut Vec<Box<dyn Any>>) -> R) -> Option<R> 
 }
 
 impl<V: Vector> Boundary<V> {
-    /// Lends a search what [`new`](Self::new) makes. If that outgrows its room, the thread keeps it with all that it has
-    /// allocated, and lends it to the next search. So only a search that needs more than any before it allocates. One
-    /// that is asked within another, by a support map, has a polytope of its own.
+    /// Lends a search what [`new`](Self::new) makes. If that outgrows its room, the thread keeps it with all that it
+    /// has allocated, and lends it to the next search. So only a search that needs more than any before it allocates.
+    /// One that is asked within another, by a support map, has a polytope of its own.
     pub(super) fn lend<R>(accuracy: f64, search: impl FnOnce(&mut Self) -> R) -> R {
         // In its place from the beginning: it is a large object to move.
         let mut own = Self::new(accuracy);

@@ -218,7 +218,8 @@ fn reach_closely<V: Vector>(
         let expanded = if is_apart { None } else { expand(cores, state, options, observer) };
         // If the cores are apart after all, GJK's points are nearer than those of a facet.
         let leads_out = |expanded: &&Expanded<V>| end == End::Overlap || !(expanded.way.h < Scalar::ZERO);
-        // A look near contact that has left more than its errors between the bounds still knows the gap better than GJK.
+        // A look near contact that has left more than its errors between the bounds still knows the gap better than
+        // GJK.
         let near = cores.near.as_ref().filter(|near| is_apart && near.gap.is_finite());
         let known = match (expanded.as_ref().filter(leads_out), near) {
             (Some(expanded), _) => Separation::of_expansion(expanded),
