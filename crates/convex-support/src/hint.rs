@@ -14,7 +14,7 @@ const SLOTS: usize = 4;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hint {
     vertices: [u32; SLOTS],
-    next: u8,
+    next: u32,
 }
 
 impl Hint {
@@ -33,7 +33,7 @@ impl Hint {
     /// The slot of the next polytope; `None` if a body has more polytopes than there are slots.
     #[inline]
     pub fn next_slot(&mut self) -> Option<&mut u32> {
-        let slot = self.vertices.get_mut(usize::from(self.next))?;
+        let slot = self.vertices.get_mut(self.next as usize)?;
         self.next += 1;
         Some(slot)
     }

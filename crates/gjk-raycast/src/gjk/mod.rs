@@ -192,15 +192,15 @@ fn descend<B: TracedSupport>(
         }
         state.simplex.push(w, -looked.n, witness);
         // If the bracket only seemed closed, the fast steps were not as good as they seemed.
-        let fast = if seems_closed { None } else { state.step(w, options.sub_algorithm) };
-        if fast.is_none() && !seems_closed && next_direction.has_turned() {
+        let is_nearer = !seems_closed && state.step(w, options.sub_algorithm);
+        if !is_nearer && !seems_closed && next_direction.has_turned() {
             // A plane that was turned away from the shortest vector may be the better bound although its support point
             // does not bring the simplex nearer.
             state.simplex.pop();
             looked = next_direction.turn_again(body, state, looked, w, reach);
             continue;
         }
-        let Some(mut v) = fast.or_else(|| state.step_by_all_faces(&mut nearing)) else {
+        if !is_nearer && !state.step_by_all_faces(&mut nearing) {
             // The fast steps' normal of a sliver is off by rounding, so that the support point along it may be a corner
             // already. Along the measured normal it is another one.
             state.ensure_measured();
@@ -209,11 +209,11 @@ fn descend<B: TracedSupport>(
                 continue;
             }
             return End::Stalled;
-        };
-        if state.overlaps(frame.touching(), &mut v) {
+        }
+        if state.overlaps(frame.touching()) {
             return End::Overlap;
         }
-        looked = next_direction.after(body, state, looked, w, reach, v);
+        looked = next_direction.after(body, state, looked, w, reach);
     }
     End::IterationLimit
 }

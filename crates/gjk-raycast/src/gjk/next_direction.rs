@@ -46,7 +46,7 @@ impl<V: Vector> NextDirection<V> {
         turned.map_or_else(|| state.along_normal(), |n| Direction { n, length: Scalar::ONE })
     }
 
-    /// The direction after a step to the shortest vector `v`, by the support point `w` with `reach` along the last
+    /// The direction after a step to the shortest vector, by the support point `w` with `reach` along the last
     /// direction.
     #[inline(always)]
     pub(super) fn after<B: TracedSupport<Vector = V>>(
@@ -56,8 +56,8 @@ impl<V: Vector> NextDirection<V> {
         looked: Direction<V>,
         w: V,
         reach: V::Scalar,
-        v: Direction<V>,
     ) -> Direction<V> {
+        let v = state.along_normal();
         if self.curved {
             let turned = self.newton.next(body, state, w, looked.n / looked.length, reach);
             return turned.map_or(v, |n| Direction { n, length: Scalar::ONE });

@@ -17,6 +17,7 @@ pub(crate) struct Gjk<V: Vector> {
     pub(crate) simplex: Simplex<V>,
     /// A vector along the shortest one found from zero to the difference (the paper's v), of any length.
     pub(crate) normal: V,
+    pub(super) normal_length: V::Scalar,
     /// The length of the shortest one.
     pub(crate) length: V::Scalar,
     /// The best lower bound on the distance of the cores, before rounding, and the axis that proves it, of any length.
@@ -32,13 +33,15 @@ impl<V: Vector> Gjk<V> {
     /// The state before the first support point, which is to be found along the given direction.
     #[inline(always)]
     pub(crate) fn new(first: V) -> Self {
+        let first_length = first.length();
         Self {
             simplex: Simplex::new(),
             normal: first,
+            normal_length: first_length,
             length: V::Scalar::infinity(),
             lower: -V::Scalar::infinity(),
             axis: first,
-            axis_length: first.length(),
+            axis_length: first_length,
             measured: false,
             iterations: 0,
         }
@@ -51,7 +54,7 @@ impl<V: Vector> Gjk<V> {
         let mut weights = [V::Scalar::ZERO; MAX_POINTS];
         weights[0] = V::Scalar::ONE;
         self.simplex.push(point, -point, witness);
-        if self.accept(Closest { v: point, face: Face::of_corners(&[0]), weights }).is_none() {
+        if !self.accept(Closest { v: point, face: Face::of_corners(&[0]), weights }) {
             self.simplex.pop();
             return false;
         }
@@ -141,66 +144,68 @@ impl<V: Vector> Gjk<V> {
 
     #[inline(always)]
     pub(super) fn along_normal(&self) -> Direction<V> {
-        Direction { n: self.normal, length: self.normal.length() }
+        Direction { n: self.normal, length: self.normal_length }
     }
 
-    /// Whether the shortest vector is no longer than `touching`; `v` is its direction, which may change as it is
-    /// measured.
+    /// Whether the shortest vector is no longer than `touching`. Its direction may change as it is measured.
     #[inline(always)]
-    pub(super) fn overlaps(&mut self, touching: V::Scalar, v: &mut Direction<V>) -> bool {
+    pub(super) fn overlaps(&mut self, touching: V::Scalar) -> bool {
         // No point is nearer than the lower bound: the length of a fast step in a sliver is then its rounding. If it
         // counted as progress, the same two steps would go on forever.
         if self.length < self.lower && !self.measured {
-            *v = self.measure().unwrap_or(*v);
+            self.measure();
         }
         // A simplex of full dimension contains zero, or is searched more closely. Any other is still to be measured,
         // even if the length of the fast step is zero, which rounding may make it.
         if self.length <= touching && self.simplex.points().len() <= V::DIM && !self.measured {
-            *v = self.measure().unwrap_or(*v);
+            self.measure();
         }
         self.length <= touching
     }
 
-    /// Goes on to the face of the simplex closest to zero, if that face is clear and nearer. The newest point is `y`.
+    /// Goes on to the face of the simplex closest to zero, if that face is clear and nearer; whether it is. The newest
+    /// point is `y`.
+    ///
+    /// The new direction is in the state alone. As an optional result it went through memory, and half of the time of a
+    /// step was spent waiting for it.
     #[inline(always)]
-    pub(super) fn step(&mut self, y: V, sub_algorithm: SubAlgorithm) -> Option<Direction<V>> {
+    pub(super) fn step(&mut self, y: V, sub_algorithm: SubAlgorithm) -> bool {
         if sub_algorithm != SubAlgorithm::Regions {
             return self.step_by(sub_algorithm);
         }
         let (points, newest) = self.simplex.padded();
-        let next = nearest(points, newest, y)?;
+        let Some(next) = nearest(points, newest, y) else { return false };
         let level = next.normal.dot(y);
-        let direction = in_range(next.normal)?;
-        let length = if direction.length > V::Scalar::ZERO { level / direction.length } else { direction.length };
-        if length < self.length {
+        let Some(Direction { n, length: size }) = in_range(next.normal) else { return false };
+        let length = if size > V::Scalar::ZERO { level / size } else { size };
+        let is_nearer = length < self.length;
+        if is_nearer {
             self.simplex.keep(next.face);
-            (self.normal, self.length, self.measured) = (direction.n, length, false);
-            Some(direction)
-        } else {
-            None
+            (self.normal, self.normal_length, self.length, self.measured) = (n, size, length, false);
         }
+        is_nearer
     }
 
     /// A step by another way to find the face.
     #[cold]
     #[inline(never)]
-    fn step_by(&mut self, sub_algorithm: SubAlgorithm) -> Option<Direction<V>> {
-        let next = sub_algorithm.closest(self.simplex.points(), V::DIM)?;
-        if next.v.norm() < self.length { self.accept(next).map(|_| self.along_normal()) } else { None }
+    fn step_by(&mut self, sub_algorithm: SubAlgorithm) -> bool {
+        let next = sub_algorithm.closest(self.simplex.points(), V::DIM);
+        next.is_some_and(|next| next.v.norm() < self.length && self.accept(next))
     }
 
     /// A step by a search of all faces. If only rounding is left to gain, a few steps without a gain are allowed. After
-    /// too many of them it returns `None`, and the newest point is not added.
+    /// too many of them it returns `false`, and the newest point is not added.
     #[cold]
     #[inline(never)]
-    pub(super) fn step_by_all_faces(&mut self, nearing: &mut Progress<V::Scalar>) -> Option<Direction<V>> {
+    pub(super) fn step_by_all_faces(&mut self, nearing: &mut Progress<V::Scalar>) -> bool {
         let next = match self.simplex.points() {
             [known @ .., newest] if known.contains(newest) => None,
             points => nearest_face(points, V::DIM),
         };
         let Some(next) = next.filter(|next| nearing.goes_on(next.v.norm())) else {
             self.simplex.pop();
-            return None;
+            return false;
         };
         self.accept(next)
     }
@@ -209,38 +214,43 @@ impl<V: Vector> Gjk<V> {
     #[inline(always)]
     pub(crate) fn ensure_measured(&mut self) {
         if !self.measured {
-            let _ = self.measure();
+            self.measure();
         }
     }
 
     /// Measures the face closest to zero by orthogonal projection, free of the rounding of the steps before.
     #[inline(never)]
-    fn measure(&mut self) -> Option<Direction<V>> {
+    fn measure(&mut self) {
         let points = self.simplex.points();
         if points.is_empty() {
-            return None;
+            return;
         }
         let foot = project(points, |corner| -corner);
         if !foot.coordinates[..points.len()].iter().all(|&b| b > V::Scalar::ZERO) {
-            return nearest_face(points, V::DIM).and_then(|found| self.accept(found));
+            if let Some(found) = nearest_face(points, V::DIM) {
+                self.accept(found);
+            }
+            return;
         }
         let v = if points.len() > V::DIM { V::ZERO } else { -foot.across };
         self.simplex.weigh(foot.coordinates);
-        self.now_at(v)
+        self.now_at(v);
     }
 
     #[inline(always)]
-    fn accept(&mut self, Closest { v, face, weights }: Closest<V>) -> Option<Direction<V>> {
+    fn accept(&mut self, Closest { v, face, weights }: Closest<V>) -> bool {
         self.simplex.retain(face, weights);
         self.now_at(v)
     }
 
-    /// Takes the measured shortest vector as the best known.
+    /// Takes the measured shortest vector as the best known, if it is finite; whether it is.
     #[inline(always)]
-    fn now_at(&mut self, v: V) -> Option<Direction<V>> {
-        let direction = in_range(v)?;
-        (self.normal, self.length, self.measured) = (direction.n, v.norm(), true);
-        Some(direction)
+    fn now_at(&mut self, v: V) -> bool {
+        let Some(Direction { n, length: size }) = in_range(v) else { return false };
+        // A vector in range keeps its length.
+        let length = if n == v { size } else { v.norm() };
+        (self.normal, self.normal_length, self.length, self.measured) = (n, size, length, true);
+        true
     }
 }
 

@@ -53,12 +53,11 @@ impl<V: Vector> Simplex<V> {
     /// # Panics
     /// If there are four already.
     pub(crate) fn push(&mut self, point: V, along: V, witness: PointPair<V>) {
-        debug_assert!(self.len < MAX_POINTS, "a simplex has at most four points");
-        self.points[self.len] = point;
-        self.along[self.len] = along;
-        self.witnesses[self.len] = witness;
-        self.weights[self.len] = V::Scalar::ZERO;
-        self.len += 1;
+        let index = self.len;
+        assert!(index < MAX_POINTS, "a simplex has at most four points");
+        (self.points[index], self.along[index], self.witnesses[index]) = (point, along, witness);
+        self.weights[index] = V::Scalar::ZERO;
+        self.len = index + 1;
     }
 
     /// Removes the newest point.
