@@ -144,7 +144,7 @@ pub(crate) trait Shapes {
     /// Both cores.
     fn cores(&self) -> [Core<Self::Vector>; 2];
     /// The support points of both cores, each along a direction of its own.
-    fn support_points(&self, along: [Self::Vector; 2], hints: &mut [Hint; 2]) -> [Self::Vector; 2];
+    fn support_points(&self, along: [Self::Vector; 2], hints: &mut [Hint; 2]) -> [Aligned<Self::Vector>; 2];
     /// As [`SupportMap::core_support_hessian`] of one of them.
     fn support_hessian(
         &self,
@@ -161,6 +161,13 @@ pub(crate) trait Shapes {
     /// Each of them, for rare queries.
     fn each(&self) -> [Shape<'_, Self::Vector>; 2];
 }
+
+/// A result in memory that shares no 16 bytes with another one. The compiler reads the end of one vector and the
+/// beginning of the next at once, if they are next to one another, and what was written by two stores is not to be read
+/// by one load until it has left the processor's queue of stores.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(16))]
+pub(crate) struct Aligned<V>(pub(crate) V);
 
 /// Two shapes of known types, with line crossings or without. The closed forms of line crossings are as much code as
 /// the whole search for a distance, so they are left out where they are not needed.
@@ -196,10 +203,14 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
     }
 
     #[inline(always)]
-    fn support_points(&self, [along_a, along_b]: [A::Vector; 2], [hint_a, hint_b]: &mut [Hint; 2]) -> [A::Vector; 2] {
+    fn support_points(
+        &self,
+        [along_a, along_b]: [A::Vector; 2],
+        [hint_a, hint_b]: &mut [Hint; 2],
+    ) -> [Aligned<A::Vector>; 2] {
         let (along_a, along_b) = if self.is_swapped { (along_b, along_a) } else { (along_a, along_b) };
         let (a, b) = (self.a.0.core_support(along_a, hint_a), self.b.0.core_support(along_b, hint_b));
-        if self.is_swapped { [b, a] } else { [a, b] }
+        if self.is_swapped { [Aligned(b), Aligned(a)] } else { [Aligned(a), Aligned(b)] }
     }
 
     #[inline(always)]
@@ -241,8 +252,8 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
 impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Both<'_, A, B> {
     /// The two bodies in order, and their cores in the order of the call.
     #[inline(always)]
-    pub(crate) fn in_order(mut self, [a, b]: [Core<A::Vector>; 2]) -> (Self, [Core<A::Vector>; 2]) {
-        self.is_swapped = comes_first(&b, &a);
+    pub(crate) fn in_order<'c>(mut self, [a, b]: &'c [Core<A::Vector>; 2]) -> (Self, [&'c Core<A::Vector>; 2]) {
+        self.is_swapped = comes_first(b, a);
         let cores = if self.is_swapped { [b, a] } else { [a, b] };
         (self, cores)
     }
@@ -265,10 +276,13 @@ fn comes_first<V: Vector>(a: &Core<V>, b: &Core<V>) -> bool {
 }
 
 /// The difference of two shapes, whose support points keep both shapes' points.
+///
+/// It borrows the cores. A copy made right after they were written waits until all of them is in the cache: in each
+/// query that took as long as two support points of two boxes.
 pub(crate) struct Pair<'a, T: Shapes + ?Sized> {
     pub(crate) shapes: &'a T,
-    pub(crate) core_a: Core<T::Vector>,
-    pub(crate) core_b: Core<T::Vector>,
+    pub(crate) core_a: &'a Core<T::Vector>,
+    pub(crate) core_b: &'a Core<T::Vector>,
     hints: [Hint; 2],
     per_unit: <T::Vector as Vector>::Scalar,
     /// The radius of a ball that the difference is swept by; the first core's radius includes it.
@@ -281,14 +295,8 @@ pub(crate) struct Pair<'a, T: Shapes + ?Sized> {
 pub(crate) type AnyPair<'a, V> = Pair<'a, dyn Shapes<Vector = V> + 'a>;
 
 impl<'a, T: Shapes + ?Sized> Pair<'a, T> {
-    #[inline]
-    pub(crate) fn new(shapes: &'a T) -> Self {
-        Self::of_cores(shapes, shapes.cores())
-    }
-
-    /// The same for shapes whose cores are given.
     #[inline(always)]
-    pub(crate) fn of_cores(shapes: &'a T, [core_a, core_b]: [Core<T::Vector>; 2]) -> Self {
+    pub(crate) fn new(shapes: &'a T, [core_a, core_b]: [&'a Core<T::Vector>; 2]) -> Self {
         Self {
             shapes,
             core_a,
@@ -302,10 +310,10 @@ impl<'a, T: Shapes + ?Sized> Pair<'a, T> {
 }
 
 impl<T: Shapes + ?Sized> Pair<'_, T> {
-    /// The difference swept by a ball.
+    /// The difference swept by a ball, by which the first core is [rounded](Core::rounded) already.
     #[inline(always)]
     pub(crate) fn swept(self, radius: <T::Vector as Vector>::Scalar) -> Self {
-        Self { core_a: self.core_a.rounded(radius), swept: radius, ..self }
+        Self { swept: radius, ..self }
     }
 
     /// Forgets the hints for support points.
@@ -412,7 +420,7 @@ impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
             hint.rewind();
         }
         let points = self.shapes.support_points([direction, -direction], &mut self.hints);
-        let [a, b] = points.map(|point| point * self.per_unit);
+        let [a, b] = points.map(|Aligned(point)| point * self.per_unit);
         let [from_a, from_b] = self.peeled;
         if !(from_a + from_b > Scalar::ZERO) {
             return (a - b, PointPair { a, b });
@@ -443,7 +451,7 @@ impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
     // Called through a pointer; a linker that resolves it would copy all of this to each call.
     #[inline(never)]
     fn certain_crossing(&self, line: LineQuery<T::Vector>) -> Option<CertainCrossing<T::Vector>> {
-        let (core_a, core_b, zero) = (&self.core_a, &self.core_b, T::Vector::ZERO);
+        let (core_a, core_b, zero) = (self.core_a, self.core_b, T::Vector::ZERO);
         let (of, line) = match (core_a.kind, core_b.kind) {
             (_, CoreKind::Point(b)) => {
                 let line = line.seen_from([zero, -b]).within(core_b.error);

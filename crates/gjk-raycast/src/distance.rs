@@ -65,7 +65,7 @@ where
     let shapes = Both::<_, _>::new(a, b);
     let cores = shapes.cores();
     // What is deep is left to the search.
-    let known = direct(&shapes, cores, options.max_iterations, observer).filter(|known| !known.overlap);
+    let known = direct(&shapes, &cores, options.max_iterations, observer).filter(|known| !known.overlap);
     if let Some(SignedDistance {
         signed_distance, lower, upper, normal, point_a, point_b, status, iterations, ..
     }) = known
@@ -73,7 +73,7 @@ where
         let (distance, overlap, normal) = (signed_distance, false, Some(normal));
         return Distance { distance, lower, upper, overlap, point_a, point_b, normal, status, iterations };
     }
-    let (shapes, cores) = shapes.in_order(cores);
+    let (shapes, cores) = shapes.in_order(&cores);
     by_search(&shapes, cores, shapes.is_swapped, options, observer)
 }
 
@@ -81,7 +81,7 @@ compiled_once! {
     /// The distance by a search, for shapes that are in order or swapped.
     fn by_search<V>(
         shapes: &dyn Shapes<Vector = V>,
-        cores: [Core<V>; 2],
+        cores: [&Core<V>; 2],
         is_swapped: bool,
         options: DistanceOptions<V>,
         observer: &mut Observer<'_, V>,

@@ -68,7 +68,8 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let shapes = Both::<_, _>::new(a, b);
-    let mut pair = Pair::new(&shapes);
+    let cores = shapes.cores();
+    let mut pair = Pair::new(&shapes, cores.each_ref());
     let offset = pair.core_a.origin - pair.core_b.origin;
     // The first axis is tried in the world's unit, before anything else is set up; the sum of the coordinates bounds
     // the length of the offset without a root.
@@ -102,21 +103,20 @@ where
         }
         known = Some(point);
     }
-    let cores = [pair.core_a, pair.core_b];
     let first = FirstSupport { offset, direction: first, point: known };
-    by_search(&shapes, cores, &options, &first, observer)
+    by_search(&shapes, &cores, &options, &first, observer)
 }
 
 compiled_once! {
     /// [`intersects_with`] if the first direction does not separate the shapes.
     fn by_search<V>(
         shapes: &dyn Shapes<Vector = V>,
-        cores: [Core<V>; 2],
+        cores: &[Core<V>; 2],
         options: &IntersectOptions<V>,
         first: &FirstSupport<V>,
         observer: &mut Observer<'_, V>,
     ) -> Intersection<V> {
-        let pair = &mut Pair::of_cores(shapes, cores);
+        let pair = &mut Pair::new(shapes, cores.each_ref());
         let size = pair.size(first.offset);
         let frame = Frame::new(pair, first.offset, size);
         if let Some(point) = first.point

@@ -126,16 +126,17 @@ pub(crate) fn as_body<A, B, R>(
     a: &A,
     b: &B,
     target_distance: <A::Vector as Vector>::Scalar,
-    search: impl FnOnce(&mut dyn CastBody<Vector = A::Vector>, [Shape<'_, A::Vector>; 2], [Core<A::Vector>; 2]) -> R,
+    search: impl FnOnce(&mut dyn CastBody<Vector = A::Vector>, [Shape<'_, A::Vector>; 2], &[Core<A::Vector>; 2]) -> R,
 ) -> R
 where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let shapes = Both::<_, _, true>::new(a, b);
-    let mut body = Pair::new(&shapes).swept(target_distance);
-    let cores = [body.core_a, body.core_b];
-    search(&mut body, shapes.each(), cores)
+    let [core_a, core_b] = shapes.cores();
+    let cores = [core_a.rounded(target_distance), core_b];
+    let mut body = Pair::new(&shapes, cores.each_ref()).swept(target_distance);
+    search(&mut body, shapes.each(), &cores)
 }
 
 /// The functions that measure shapes in contact at the start, in addition to the cast itself.
@@ -161,13 +162,13 @@ compiled_once! {
     pub(crate) fn by_search<V>(
         body: &mut dyn CastBody<Vector = V>,
         shapes: [Shape<'_, V>; 2],
-        cores: [Core<V>; 2],
+        cores: &[Core<V>; 2],
         motion: Motion<V>,
         options: &LinearCastOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> LinearCast<V> {
         let [a, b] = shapes;
-        let (whole, wanted) = ray_of(motion, cores.map(|core| core.origin), options);
+        let (whole, wanted) = ray_of(motion, cores.each_ref().map(|core| core.origin), options);
         let CastRay { ray, direction_error, .. } = whole;
         // Of no other pair is a crossing known.
         if cores.iter().any(|core| matches!(core.kind, CoreKind::Point(_)))
@@ -186,7 +187,7 @@ compiled_once! {
 fn answer<V: Vector>(
     cast: &ObstacleCast<V>,
     [a, b]: [Shape<'_, V>; 2],
-    [core_a, core_b]: [Core<V>; 2],
+    cores: &[Core<V>; 2],
     motion: Motion<V>,
     options: &LinearCastOptions<V>,
 ) -> LinearCast<V> {
@@ -205,7 +206,7 @@ fn answer<V: Vector>(
     }
     let start = StartingPair { a, b, target };
     answer.outcome = match &cast.outcome {
-        Outcome::Hit(hit) => Outcome::Hit(hit_on_the_way(hit, cast.scale, [core_a, core_b], motion.velocity_b)),
+        Outcome::Hit(hit) => Outcome::Hit(hit_on_the_way(hit, cast.scale, cores, motion.velocity_b)),
         Outcome::Miss(miss) => Outcome::Miss(Miss { axis: -miss.axis }),
         Outcome::Undecided => Outcome::Undecided,
     };
@@ -218,6 +219,7 @@ fn answer<V: Vector>(
         (extra.touch)(&start, &mut answer, options);
     }
     if options.start_in_contact == StartInContact::IfDeeper {
+        let [core_a, core_b] = cores;
         let sizes = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
         let far = core_a.origin.norm() + core_b.origin.norm();
         // By powers of two that are less than 1, so that nothing overflows.
@@ -268,7 +270,7 @@ fn ray_of<V: Vector>(
 fn hit_on_the_way<V: Vector>(
     hit: &CastHit<V>,
     scale: V::Scalar,
-    [core_a, core_b]: [Core<V>; 2],
+    [core_a, core_b]: &[Core<V>; 2],
     velocity_b: V,
 ) -> Impact<V> {
     let &CastHit { lambda: time, normal, spot, witness: PointPair { a: p, b: q } } = hit;

@@ -72,8 +72,8 @@ where
 {
     let shapes = Both::<_, _>::new(a, b);
     let cores = shapes.cores();
-    direct(&shapes, cores, options.max_iterations, observer).unwrap_or_else(|| {
-        let (shapes, cores) = shapes.in_order(cores);
+    direct(&shapes, &cores, options.max_iterations, observer).unwrap_or_else(|| {
+        let (shapes, cores) = shapes.in_order(&cores);
         by_search(&shapes, cores, shapes.is_swapped, options, observer)
     })
 }
@@ -82,7 +82,7 @@ compiled_once! {
     /// The signed distance by a search, for shapes that are in order or swapped.
     fn by_search<V>(
         shapes: &dyn Shapes<Vector = V>,
-        cores: [Core<V>; 2],
+        cores: [&Core<V>; 2],
         is_swapped: bool,
         options: SignedDistanceOptions<V>,
         observer: &mut Observer<'_, V>,
@@ -105,8 +105,8 @@ pub(crate) fn rough_signed_distance<V: Vector>(
     extra: Extra<Closer<V>>,
 ) -> SignedDistance<V> {
     let parts = shapes.cores();
-    direct(shapes, parts, options.max_iterations, &mut Observer::none()).unwrap_or_else(|| {
-        let mut cores = Cores::new(shapes, parts);
+    direct(shapes, &parts, options.max_iterations, &mut Observer::none()).unwrap_or_else(|| {
+        let mut cores = Cores::new(shapes, parts.each_ref());
         let wanted = Wanted::new(OfOverlap::RoughDepth, options, extra);
         separation::<_, true>(&mut cores, &wanted, &mut Observer::none()).signed_distance(&cores)
     })

@@ -42,7 +42,7 @@ use super::placed::{Corners, Placed};
 use super::rough_look::times;
 use super::trajectory::TurningPlane;
 use crate::SignedDistanceOptions;
-use crate::body::Pair;
+use crate::body::{Pair, Shapes as _};
 use crate::gjk::{Frame, Gjk, GjkOptions, gjk, rounding};
 use crate::observer::Observer;
 use crate::shape::WithoutLines;
@@ -123,7 +123,8 @@ impl<V: Vector> MovingPair<'_, V> {
 
     /// Corners of the difference whose face is nearest to zero, as many as there are dimensions.
     fn closest_corners(&self, placed: &Placed<'_, V>, axis: V) -> Option<Corners<V>> {
-        let mut pair = Pair::new(placed);
+        let cores = placed.cores();
+        let mut pair = Pair::new(placed, cores.each_ref());
         let size = pair.size(placed.offset);
         // What has a radius has an inside.
         if pair.radius() > Scalar::ZERO || !is_moderate(size) {
@@ -156,7 +157,8 @@ impl<V: Vector> MovingPair<'_, V> {
 
 /// What a point of the difference is wrong by.
 fn error_of<V: Vector>(placed: &Placed<'_, V>) -> V::Scalar {
-    let pair = Pair::new(placed);
+    let cores = placed.cores();
+    let pair = Pair::new(placed, cores.each_ref());
     rounding(pair.size(placed.offset)) + pair.error()
 }
 

@@ -52,7 +52,7 @@ pub(crate) struct FullMotion<V: Vector> {
     pub(super) straight: fn(
         &mut dyn CastBody<Vector = V>,
         [Shape<'_, V>; 2],
-        [Core<V>; 2],
+        &[Core<V>; 2],
         Motion<V>,
         &LinearCastOptions<V>,
     ) -> LinearCast<V>,
@@ -90,7 +90,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         let a = MovingBody::new(a, motions[0], options.target_distance);
         let b = MovingBody::new(b, motions[1], Scalar::ZERO);
         let offset = a.core.origin - b.core.origin;
-        let pair = Pair::of_cores(shapes, [a.core, b.core]);
+        let pair = Pair::new(shapes, [&a.core, &b.core]);
         let knows_points = pair.closest_points(offset, pair.size(offset)).is_some();
         let blocks = || Some([Block::of(a.shape, &a.core)?, Block::of(b.shape, &b.core)?]);
         let boxes = if knows_points || extra.get().is_none() { None } else { blocks() };
@@ -224,7 +224,8 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
 
     fn level(&self, time: V::Scalar, normal: V) -> (V::Scalar, V::Scalar) {
         let placed = &self.placed(time);
-        let mut pair = Pair::new(placed);
+        let cores = placed.cores();
+        let mut pair = Pair::new(placed, cores.each_ref());
         let size = pair.size(placed.offset);
         // Of numbers out of range nothing is known.
         if !is_moderate(size) {

@@ -15,7 +15,7 @@ use num_traits::Float;
 use super::instant::{Instant, Limits, NEAR};
 use super::moving_pair::MovingPair;
 use super::placed::{CornerFace, Placed};
-use crate::body::{Pair, TracedSupport as _};
+use crate::body::{Pair, Shapes as _, TracedSupport as _};
 use crate::gjk::rounding;
 use crate::separation::{Cores, Uncertainty, slack};
 use crate::simplex::{MAX_POINTS, project};
@@ -42,7 +42,8 @@ impl<V: Vector> MovingPair<'_, V> {
         is_close: bool,
     ) -> Option<Instant<V>> {
         let placed = self.placed_here(time);
-        let mut pair = Pair::new(&placed);
+        let cores = placed.cores();
+        let mut pair = Pair::new(&placed, cores.each_ref());
         let offset = placed.offset;
         let size = pair.size(offset);
         let points = pair.closest_points(offset, size)?;
@@ -89,7 +90,8 @@ impl<V: Vector> MovingPair<'_, V> {
     /// The bodies at a time as well as it can be known, if what was closest at the last look is so still, and proves
     /// that they are apart or overlap.
     pub(super) fn near_look(&self, placed: &Placed<'_, V>, axis: V) -> Option<Instant<V>> {
-        let pair = Pair::new(placed);
+        let cores = placed.cores();
+        let pair = Pair::new(placed, cores.each_ref());
         let size = pair.size(placed.offset);
         if !is_moderate(size) {
             return None;

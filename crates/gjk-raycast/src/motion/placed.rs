@@ -4,7 +4,7 @@ use core::cell::Cell;
 
 use convex_support::{Core, CoreKind, Feature, Hint, Matrix, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
-use crate::body::{Of, PointPair, Shapes};
+use crate::body::{Aligned, Of, PointPair, Shapes};
 use crate::separation::across_corners;
 use crate::shape::Shape;
 use crate::simplex::{MAX_POINTS, project};
@@ -124,14 +124,15 @@ impl<V: Vector> Shapes for Placed<'_, V> {
     }
 
     #[inline(always)]
-    fn support_points(&self, [along_a, along_b]: [V; 2], _: &mut [Hint; 2]) -> [V; 2] {
+    fn support_points(&self, [along_a, along_b]: [V; 2], _: &mut [Hint; 2]) -> [Aligned<V>; 2] {
         let mut hints = self.hints.get();
         for hint in &mut hints {
             hint.rewind();
         }
-        let [a, b] = self.shapes.support_points([self.a.before(along_a), self.b.before(along_b)], &mut hints);
+        let [Aligned(a), Aligned(b)] =
+            self.shapes.support_points([self.a.before(along_a), self.b.before(along_b)], &mut hints);
         self.hints.set(hints);
-        [self.a.turned(a), self.b.turned(b)]
+        [Aligned(self.a.turned(a)), Aligned(self.b.turned(b))]
     }
 
     fn support_hessian(&self, of: Of, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {

@@ -193,8 +193,8 @@ pub(super) struct ClosedForm<V: Vector> {
 
 impl<'a, V: Vector> Cores<'a, V> {
     #[inline(always)]
-    pub(crate) fn new(shapes: &'a (dyn Shapes<Vector = V> + 'a), cores: [Core<V>; 2]) -> Self {
-        let mut pair = Pair::of_cores(shapes, cores);
+    pub(crate) fn new(shapes: &'a (dyn Shapes<Vector = V> + 'a), cores: [&'a Core<V>; 2]) -> Self {
+        let mut pair = Pair::new(shapes, cores);
         let offset = pair.core_a.origin - pair.core_b.origin;
         let size = pair.size(offset);
         let radii = [pair.core_a.radius, pair.core_b.radius];

@@ -20,11 +20,11 @@ use crate::{Iterate, Status};
 #[inline(always)]
 pub(crate) fn direct<T: Shapes + ?Sized>(
     shapes: &T,
-    cores: [Core<T::Vector>; 2],
+    cores: &[Core<T::Vector>; 2],
     max_iterations: usize,
     observer: &mut Observer<'_, T::Vector>,
 ) -> Option<SignedDistance<T::Vector>> {
-    let mut pair = Pair::of_cores(shapes, cores);
+    let mut pair = Pair::new(shapes, cores.each_ref());
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let points = pair.closest_points(offset, size)?;

@@ -102,8 +102,9 @@ pub(crate) fn near_contact_of<V: Vector>(
     b: Shape<'_, V>,
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
-    let (shapes, cores) = Both::<_, _>::new(a, b).in_order([a.core(), b.core()]);
-    let pair: &mut AnyPair<'_, V> = &mut Pair::of_cores(&shapes, cores);
+    let cores = [a.core(), b.core()];
+    let (shapes, cores) = Both::<_, _>::new(a, b).in_order(&cores);
+    let pair: &mut AnyPair<'_, V> = &mut Pair::new(&shapes, cores);
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(pair, offset, size);
@@ -154,7 +155,7 @@ pub(super) fn begin<V: Vector>(
         // If they coincide, the vector between them is no direction.
         state = Gjk::new(first);
         // Searches of its own, like a query that begins here.
-        let mut pair = Pair::of_cores(pair.shapes, [pair.core_a, pair.core_b]);
+        let mut pair = Pair::new(pair.shapes, [pair.core_a, pair.core_b]);
         pair.set_scale(frame.scale);
         run(&mut state, &mut pair, *frame, first, max_iterations);
     }
@@ -315,7 +316,7 @@ impl<V: Vector> Known<V> {
         let mut best = plane;
         if self.is_uneven() && !best.is_beyond(self.radius) {
             // A point is a segment without length.
-            let half = |core: Core<V>| if let CoreKind::Segment { half, .. } = core.kind { half } else { V::ZERO };
+            let half = |core: &Core<V>| if let CoreKind::Segment { half, .. } = core.kind { half } else { V::ZERO };
             let halves = [half(pair.core_a), half(pair.core_b)];
             let edge = if halves[1].norm() > halves[0].norm() { halves[1] } else { halves[0] };
             for n in about_edge(edge, best.n) {

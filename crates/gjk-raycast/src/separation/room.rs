@@ -8,7 +8,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::near_contact::{begin, go_on};
-use crate::body::{AnyPair, Both, Pair, PointPair};
+use crate::body::{AnyPair, Both, Pair, PointPair, Shapes as _};
 use crate::gjk::Frame;
 use crate::shape::Shape;
 use crate::simplex::{MAX_POINTS, cross};
@@ -58,7 +58,8 @@ pub(crate) fn look_after<V: Vector>(
     max_iterations: usize,
 ) -> After<V> {
     let shapes = Both::<_, _>::new(a, b);
-    let mut pair: AnyPair<'_, V> = Pair::new(&shapes);
+    let cores = shapes.cores();
+    let mut pair: AnyPair<'_, V> = Pair::new(&shapes, cores.each_ref());
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset) + aside;
     let frame = Frame::new(&mut pair, offset, size);
