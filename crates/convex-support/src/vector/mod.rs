@@ -135,11 +135,15 @@ pub trait Vector:
     #[must_use]
     fn unit(self) -> Option<Self> {
         let squared = self.length_squared();
-        if is_comfortable(squared) {
-            Some(self / squared.sqrt())
+        let is_usual = is_comfortable(squared);
+        // NaN if there is none: an optional vector of the rare case would take the usual one through memory, too.
+        let unit = if is_usual {
+            self / squared.sqrt()
         } else {
-            rarely(self, |v| scaled(v).filter(|(v, _)| v.is_finite()).map(|(v, _)| v / v.length()))
-        }
+            let none = Self::splat(Self::Scalar::nan());
+            rarely(self, |v| scaled(v).filter(|(v, _)| v.is_finite()).map_or(none, |(v, _)| v / v.length()))
+        };
+        (is_usual || !unit.is_nan()).then_some(unit)
     }
 }
 
