@@ -92,7 +92,10 @@ compiled_once! {
         let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation, extra) };
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, false>(&mut cores, &wanted, observer));
-        let answer = found.distance(&cores);
-        if is_swapped { answer.reversed() } else { answer }
+        let mut answer = found.distance(&cores);
+        if is_swapped {
+            answer = answer.reversed();
+        }
+        answer
     }
 }

@@ -91,8 +91,11 @@ compiled_once! {
         let wanted = Wanted::new(OfOverlap::Depth, SignedDistanceOptions { axis, ..options }, Closer::named());
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, true>(&mut cores, &wanted, observer));
-        let answer = found.signed_distance(&cores);
-        if is_swapped { answer.reversed() } else { answer }
+        let mut answer = found.signed_distance(&cores);
+        if is_swapped {
+            answer = answer.reversed();
+        }
+        answer
     }
 }
 
