@@ -198,8 +198,11 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
 
     #[inline(always)]
     fn cores(&self) -> [Core<A::Vector>; 2] {
-        let [a, b] = [self.a.core(), self.b.core()];
-        if self.is_swapped { [b, a] } else { [a, b] }
+        let mut cores = [self.a.core(), self.b.core()];
+        if self.is_swapped {
+            cores.reverse();
+        }
+        cores
     }
 
     #[inline(always)]

@@ -133,8 +133,8 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let shapes = Both::<_, _, true>::new(a, b);
-    let [core_a, core_b] = shapes.cores();
-    let cores = [core_a.rounded(target_distance), core_b];
+    let mut cores = shapes.cores();
+    cores[0] = cores[0].rounded(target_distance);
     let mut body = Pair::new(&shapes, cores.each_ref()).swept(target_distance);
     search(&mut body, shapes.each(), &cores)
 }
