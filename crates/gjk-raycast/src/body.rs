@@ -255,7 +255,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
 impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Both<'_, A, B> {
     /// The two bodies in order, and their cores in the order of the call.
     #[inline(always)]
-    pub(crate) fn in_order<'c>(mut self, [a, b]: &'c [Core<A::Vector>; 2]) -> (Self, [&'c Core<A::Vector>; 2]) {
+    pub(crate) fn in_order<'c>(mut self, [a, b]: [&'c Core<A::Vector>; 2]) -> (Self, [&'c Core<A::Vector>; 2]) {
         self.is_swapped = comes_first(b, a);
         let cores = if self.is_swapped { [b, a] } else { [a, b] };
         (self, cores)

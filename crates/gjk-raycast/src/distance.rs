@@ -65,7 +65,7 @@ where
     let shapes = Both::<_, _>::new(a, b);
     let cores = shapes.cores();
     // What is deep is left to the search.
-    let known = direct(&shapes, &cores, options.max_iterations, observer).filter(|known| !known.overlap);
+    let known = direct(&shapes, cores, options.max_iterations, observer).filter(|known| !known.overlap);
     if let Some(SignedDistance {
         signed_distance, lower, upper, normal, point_a, point_b, status, iterations, ..
     }) = known
@@ -73,7 +73,9 @@ where
         let (distance, overlap, normal) = (signed_distance, false, Some(normal));
         return Distance { distance, lower, upper, overlap, point_a, point_b, normal, status, iterations };
     }
-    let (shapes, cores) = shapes.in_order(&cores);
+    // In variables of their own, so that the closed form has them in registers.
+    let [core_a, core_b] = cores;
+    let (shapes, cores) = shapes.in_order([&core_a, &core_b]);
     by_search(&shapes, cores, shapes.is_swapped, options, observer)
 }
 

@@ -72,8 +72,10 @@ where
 {
     let shapes = Both::<_, _>::new(a, b);
     let cores = shapes.cores();
-    direct(&shapes, &cores, options.max_iterations, observer).unwrap_or_else(|| {
-        let (shapes, cores) = shapes.in_order(&cores);
+    direct(&shapes, cores, options.max_iterations, observer).unwrap_or_else(|| {
+        // In variables of their own, so that the closed form has them in registers.
+        let [core_a, core_b] = cores;
+        let (shapes, cores) = shapes.in_order([&core_a, &core_b]);
         by_search(&shapes, cores, shapes.is_swapped, options, observer)
     })
 }
@@ -108,7 +110,7 @@ pub(crate) fn rough_signed_distance<V: Vector>(
     extra: Extra<Closer<V>>,
 ) -> SignedDistance<V> {
     let parts = shapes.cores();
-    direct(shapes, &parts, options.max_iterations, &mut Observer::none()).unwrap_or_else(|| {
+    direct(shapes, parts, options.max_iterations, &mut Observer::none()).unwrap_or_else(|| {
         let mut cores = Cores::new(shapes, parts.each_ref());
         let wanted = Wanted::new(OfOverlap::RoughDepth, options, extra);
         separation::<_, true>(&mut cores, &wanted, &mut Observer::none()).signed_distance(&cores)

@@ -20,7 +20,7 @@ use crate::{Iterate, Status};
 #[inline(always)]
 pub(crate) fn direct<T: Shapes + ?Sized>(
     shapes: &T,
-    cores: &[Core<T::Vector>; 2],
+    cores: [Core<T::Vector>; 2],
     max_iterations: usize,
     observer: &mut Observer<'_, T::Vector>,
 ) -> Option<SignedDistance<T::Vector>> {

@@ -103,7 +103,7 @@ pub(crate) fn near_contact_of<V: Vector>(
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
     let cores = [a.core(), b.core()];
-    let (shapes, cores) = Both::<_, _>::new(a, b).in_order(&cores);
+    let (shapes, cores) = Both::<_, _>::new(a, b).in_order(cores.each_ref());
     let pair: &mut AnyPair<'_, V> = &mut Pair::new(&shapes, cores);
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
