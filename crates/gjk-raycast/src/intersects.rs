@@ -104,19 +104,21 @@ where
         known = Some(point);
     }
     let first = FirstSupport { offset, direction: first, point: known };
-    by_search(&shapes, &cores, &options, &first, observer)
+    // In variables of their own, so that the first axis has them in registers.
+    let [core_a, core_b] = cores;
+    by_search(&shapes, [&core_a, &core_b], &options, &first, observer)
 }
 
 compiled_once! {
     /// [`intersects_with`] if the first direction does not separate the shapes.
     fn by_search<V>(
         shapes: &dyn Shapes<Vector = V>,
-        cores: &[Core<V>; 2],
+        cores: [&Core<V>; 2],
         options: &IntersectOptions<V>,
         first: &FirstSupport<V>,
         observer: &mut Observer<'_, V>,
     ) -> Intersection<V> {
-        let pair = &mut Pair::new(shapes, cores.each_ref());
+        let pair = &mut Pair::new(shapes, cores);
         let size = pair.size(first.offset);
         let frame = Frame::new(pair, first.offset, size);
         if let Some(point) = first.point
