@@ -166,8 +166,8 @@ impl<V: Vector> Gjk<V> {
     /// Goes on to the face of the simplex closest to zero, if that face is clear and nearer; whether it is. The newest
     /// point is `y`.
     ///
-    /// The new direction is in the state alone. As an optional result it went through memory, and half of the time of a
-    /// step was spent waiting for it.
+    /// The new direction is in the state alone. As an optional result it went through memory, and the distance of two
+    /// boxes took 14 % longer.
     #[inline(always)]
     pub(super) fn step(&mut self, y: V, sub_algorithm: SubAlgorithm) -> bool {
         if sub_algorithm != SubAlgorithm::Regions {
