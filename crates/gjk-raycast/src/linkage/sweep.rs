@@ -227,7 +227,7 @@ impl<V: Vector> SweptBall<V> {
         let way = velocity.abs() * half + acceleration.abs() * (squared * number(0.5)) + V::splat(bent);
         let way = way.min(V::splat(always));
         let drift = way.norm().min(always);
-        // The error of the angular velocity and of the other derivatives, of which these lengths are made.
+        // The error of the ball's place, and of the derivatives that these lengths are made of.
         let lost = (frame.turn_error + epsilons(64.0)) * (always + bent + distance);
         let room = ball.radius + frame.error_of(ball.center.norm()) + lost;
         Self { center, along: (way + V::splat(room)) * above::<V>(), radius: (room + drift) * above::<V>(), drift }
