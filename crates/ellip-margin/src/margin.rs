@@ -1,8 +1,10 @@
 //! The free margin of two ellipsoids.
 
 use convex_support::{Ellipsoid, Scalar, Vector};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
-use crate::numerics::{add, store};
+use crate::numerics::{add, dot, store, sub};
 use crate::pair::Pair;
 use crate::polynomial::{self, Quick};
 use crate::secular::{self, Solution};
@@ -147,4 +149,61 @@ impl<V: Vector> Margin<V> {
     pub fn scale(&self) -> V::Scalar {
         num_traits::Float::sqrt(V::Scalar::ONE + self.margin)
     }
+
+    /// A lower bound of the margin after E₁ has moved, without another query: `from` is where it was when this margin
+    /// was found, and `to` is where it is now. E₂ is at rest. As long as the bound is above the margin to be kept, E₂
+    /// need not be asked about again. −1 if the semi-axes have changed.
+    ///
+    /// ```
+    /// use ellip_margin::convex_support::{Ellipsoid, glam::{DQuat, DVec3}};
+    /// use ellip_margin::{MarginOptions, free_margin};
+    ///
+    /// let hand = Ellipsoid::new(DVec3::ZERO, DVec3::new(0.2, 0.1, 0.1), DQuat::IDENTITY)?;
+    /// let shelf = Ellipsoid::new(DVec3::X, DVec3::new(0.2, 0.5, 0.5), DQuat::IDENTITY)?;
+    /// let margin = free_margin(&hand, &shelf, MarginOptions::default()); // 4² − 1
+    ///
+    /// // It may go on by 0.1 and turn by 0.1, and touches only at more than twice its size, for all that is known.
+    /// let near = Ellipsoid::new(DVec3::X * 0.1, DVec3::new(0.2, 0.1, 0.1), DQuat::from_rotation_z(0.1))?;
+    /// assert!(margin.after_motion(&hand, &near) > 3.0);
+    /// assert!(margin.after_motion(&hand, &near) < free_margin(&near, &shelf, MarginOptions::default()).margin);
+    /// // It may not go on by 0.7.
+    /// let far = Ellipsoid::new(DVec3::X * 0.7, DVec3::new(0.2, 0.1, 0.1), DQuat::IDENTITY)?;
+    /// assert!(margin.after_motion(&hand, &far) < 0.0);
+    /// # Ok::<(), ellip_margin::convex_support::InvalidShape>(())
+    /// ```
+    #[must_use]
+    pub fn after_motion(&self, from: &Ellipsoid<V>, to: &Ellipsoid<V>) -> V::Scalar {
+        // The margin is right to some twelve digits, or to the rounding of its own precision.
+        let lost = 16.0 * V::Scalar::EPSILON.as_f64() + 1e-11;
+        let scale = scale_after::<V>(self.scale().as_f64() * (1.0 - lost), from, to).max(0.0);
+        V::Scalar::from_f64(scale * scale * (1.0 - lost) - 1.0)
+    }
+}
+
+/// A lower bound of √(1 + m) with E₁ at `to`, if that was `scale` with E₁ at `from`; 0 if its semi-axes have changed.
+///
+/// A point with the coordinates p = diag(a)⁻¹Rᵀ(x − x₁) in the old ball has p′ = Gp + δ in the new one, with G =
+/// diag(a)⁻¹R′ᵀR·diag(a), δ = diag(a)⁻¹R′ᵀ(x₁ − x₁′): ‖p′‖ ≥ (1 − ‖G − I‖)‖p‖ − ‖δ‖.
+pub(crate) fn scale_after<V: Vector>(scale: f64, from: &Ellipsoid<V>, to: &Ellipsoid<V>) -> f64 {
+    fn once<V: Vector, const N: usize>(scale: f64, from: &Ellipsoid<V>, to: &Ellipsoid<V>) -> f64 {
+        let Pair { x1: old_center, x2: center, axes1: old, axes2: new, a1: a, a2 } = Pair::<N>::new(from, to);
+        if a2 != a {
+            return 0.0;
+        }
+        let moved = sub(old_center, center);
+        let (mut turn, mut shift) = (0.0, 0.0);
+        for i in 0..N {
+            for j in 0..N {
+                let entry = (dot(new[i], old[j]) - f64::from(u8::from(i == j))) * (a[j] / a[i]);
+                turn += entry * entry;
+            }
+            let delta = dot(new[i], moved) / a[i];
+            shift += delta * delta;
+        }
+        // A generous bound on the rounding of axes and products.
+        let [least, most] = [f64::min, f64::max].map(|extreme| a.into_iter().reduce(extreme).unwrap_or(0.0));
+        let turn = turn.sqrt() + 64.0 * V::Scalar::EPSILON.as_f64() * (most / least);
+        (1.0 - turn) * scale - shift.sqrt() * (1.0 + 1e-12)
+    }
+    in_dimension!(once::<V>(scale, from, to))
 }

@@ -5,6 +5,7 @@ use convex_support::Ellipsoid;
 use convex_support::glam::{DQuat, DVec3, Mat3, Vec3};
 use ellip_margin::{MarginOptions, MarginTracker, free_margin};
 use proptest::prelude::*;
+use proptest::strategy::ValueTree as _;
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
@@ -36,6 +37,27 @@ proptest! {
         }
         prop_assert!(track.iterations() <= 500, "{} iterations", track.iterations());
     }
+}
+
+/// What the margin of one pose promises for another is kept, and is not too little to be of use.
+#[test]
+fn a_margin_bounds_what_it_is_after_a_motion() {
+    let (mut used, mut rng) = (0.0_f64, proptest::test_runner::TestRunner::deterministic());
+    let bodies = (ellipsoid3(1.0, 0.01), ellipsoid3(3.0, 0.5), crate::common::within(1.0), crate::common::within(1.0));
+    for k in 0..2000 {
+        let (link, obstacle, way, turn) = bodies.new_tree(&mut rng).expect("a value").current();
+        let size = 0.5_f64.powi(k % 20);
+        let to = link.posed(DQuat::from_scaled_axis(turn * size), way * size).expect("finite");
+        let [before, after] = [&link, &to].map(|link| free_margin(link, &obstacle, MarginOptions::default()).margin);
+        let known = free_margin(&link, &obstacle, MarginOptions::default()).after_motion(&link, &to);
+        assert!(-1.0 <= known && known <= after, "{known} of {before}, and it is {after}");
+        used = used.max((known + 1.0) / (before + 1.0));
+    }
+    assert!(used > 0.999, "a small step leaves nearly all of the margin: {used}");
+    let (wide, ball) = (DVec3::new(2.0, 1.0, 1.0), Ellipsoid::new(DVec3::ZERO, DVec3::ONE, DQuat::IDENTITY));
+    let (ball, other) = (ball.expect("a ball"), Ellipsoid::new(DVec3::X * 9.0, wide, DQuat::IDENTITY).expect("valid"));
+    let margin = free_margin(&ball, &other, MarginOptions::default());
+    assert_eq!(margin.after_motion(&ball, &other), -1.0, "another body is no motion");
 }
 
 /// A tracker that has seen a ν of 1e11 forecasts it again. Newton's first step back from there is wrong by that times

@@ -12,7 +12,9 @@ use std::f64::consts::FRAC_PI_2;
 
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{Ball, Posed, Rounded, Segment};
-use gjk_raycast::{BodyDistance, DistanceOptions, Joint, Link, Linkage, MotionCastOptions, PathWorkspace, Pose, Scene};
+use gjk_raycast::{
+    BodyDistance, DistanceOptions, Joint, JointKind, Link, Linkage, MotionCastOptions, PathWorkspace, Pose, Scene,
+};
 
 /// A bar around each link of the arm.
 type Bar = Rounded<Segment<DVec3>>;
@@ -41,7 +43,7 @@ fn ur5() -> Result<Linkage<Bar>, Box<dyn Error>> {
     let (mut joints, mut links) = (Vec::new(), Vec::new());
     for (i, (turn, translation, axis, end, radius)) in arm.into_iter().enumerate() {
         let pose = Pose { rotation: DQuat::from_rotation_y(turn), translation };
-        joints.push(Joint::revolute(i.checked_sub(1), pose, axis));
+        joints.push(Joint { parent: i.checked_sub(1), pose, kind: JointKind::Revolute(axis) });
         let bar = Rounded::new(Segment::new([DVec3::ZERO, end])?, radius)?;
         links.push(Link { joint: Some(i), bodies: vec![bar] });
     }
@@ -83,7 +85,7 @@ impl Filter<'_> {
     fn ask(&mut self) -> Result<(), Box<dyn Error>> {
         self.questions += 1;
         self.asked_at = self.at;
-        self.near.resize(self.arm.len(), Vec::new());
+        self.near.resize(self.arm.links(), Vec::new());
         for (link, near) in self.near.iter_mut().enumerate() {
             let body = self.arm.placed(link, 0, &self.at)?;
             self.scene.all().nearest_k(&body, NEAREST, DistanceOptions::new(), near);
@@ -124,7 +126,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = [0.0, -1.2, 1.0, -1.0, -1.5, 0.0];
 
     // Clutter all around, from where the arm reaches to the walls, and a few things within its reach.
-    let mut clear = Scene::new((0..arm.len()).map(|link| arm.placed(link, 0, &start)).collect::<Result<Vec<_>, _>>()?)?;
+    let mut clear =
+        Scene::new((0..arm.links()).map(|link| arm.placed(link, 0, &start)).collect::<Result<Vec<_>, _>>()?)?;
     clear.rebuild();
     let mut balls = Vec::new();
     while balls.len() < 10_000 {

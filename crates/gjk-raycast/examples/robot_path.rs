@@ -8,7 +8,8 @@
 use convex_support::glam::DVec3;
 use convex_support::{Ball, Cuboid, Posed, Rounded, Segment, SupportMap};
 use gjk_raycast::{
-    HalfSpace, Joint, JointBoxOutcome, Link, Linkage, LinkageError, MotionCastOptions, Path, PathWorkspace, Pose, Scene,
+    HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, MotionCastOptions, Path, PathWorkspace,
+    Pose, Scene,
 };
 
 type Shape = Box<dyn SupportMap<Vector = DVec3>>;
@@ -23,10 +24,10 @@ fn robot() -> Result<Linkage<Shape>, Box<dyn std::error::Error>> {
         Ok(Box::new(Rounded::new(Segment::new([DVec3::ZERO, DVec3::X * length])?, radius)?))
     };
     let joints = [
-        Joint::revolute(None, at(DVec3::Z * 0.5), DVec3::Z),
-        Joint::revolute(Some(0), Pose::default(), DVec3::Y),
-        Joint::revolute(Some(1), at(DVec3::X), DVec3::Y),
-        Joint::prismatic(Some(2), at(DVec3::X * 0.5), DVec3::X),
+        Joint { parent: None, pose: at(DVec3::Z * 0.5), kind: JointKind::Revolute(DVec3::Z) },
+        Joint { parent: Some(0), pose: Pose::default(), kind: JointKind::Revolute(DVec3::Y) },
+        Joint { parent: Some(1), pose: at(DVec3::X), kind: JointKind::Revolute(DVec3::Y) },
+        Joint { parent: Some(2), pose: at(DVec3::X * 0.5), kind: JointKind::Prismatic(DVec3::X) },
     ];
     let base: Shape = Box::new(Posed::translated(Cuboid::new(DVec3::new(0.2, 0.2, 0.2))?, DVec3::Z * 0.2)?);
     let finger = |y: f64| Posed::translated(Ball::new(0.05)?, DVec3::new(0.4, y, 0.0));
@@ -82,7 +83,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let above = |turn: f64| [turn, -1.2, 0.6, 0.0];
     let around = ask(&[from, above(-1.0), above(1.0), to])?;
-    println!("around it: {:?}, by {} casts", around.first, around.work.casts);
+    println!("around it: {:?}, by {} casts", around.first, around.casts);
     assert!(around.is_free(), "{around:?}");
     Ok(())
 }

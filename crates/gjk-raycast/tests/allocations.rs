@@ -6,10 +6,10 @@ use std::hint::black_box;
 
 use allocation_counter::measure;
 use convex_support::glam::{DQuat, DVec3, Quat, Vec3};
-use convex_support::{Cone, Cylinder, Ellipsoid, Polytope, Posed, SupportMap};
+use convex_support::{Capsule, Cone, Cylinder, Ellipsoid, Polytope, Posed, SupportMap};
 use gjk_raycast::{
-    LinearCastOptions, Motion, MotionCastOptions, RigidMotion, Scene, SignedDistanceOptions, StartInContact, contact,
-    linear_cast, motion_cast, signed_distance,
+    Joint, JointKind, LinearCastOptions, Link, Linkage, Motion, MotionCastOptions, PathWorkspace, Pose, RigidMotion,
+    Scene, SignedDistanceOptions, StartInContact, contact, linear_cast, motion_cast, signed_distance,
 };
 
 type Shape = Box<dyn SupportMap<Vector = DVec3> + Send + Sync>;
@@ -124,6 +124,29 @@ fn the_contacts_of_a_scene_allocate_nothing_once_warm() {
         let _ = scene.all().contacts_within(0.01, SignedDistanceOptions::default(), &mut contacts);
     });
     assert!(cold > 8 && warm == 0, "{cold} allocations, and then {warm}");
+}
+
+/// The paths of one robot share a workspace: those that are free, those that touch something, and its own links.
+#[test]
+fn a_path_allocates_nothing_once_warm() {
+    let joint = |parent: Option<usize>, at: DVec3| {
+        let pose = Pose { translation: at, ..Pose::default() };
+        Joint { parent, pose, kind: JointKind::Revolute(DVec3::Z) }
+    };
+    let link = |joint| Link { joint: Some(joint), bodies: vec![Capsule::new(0.4, 0.1).expect("positive")] };
+    let joints = [joint(None, DVec3::ZERO), joint(Some(0), DVec3::Y), joint(Some(1), DVec3::Y)];
+    let robot = Linkage::new(joints, [0, 1, 2].map(link)).and_then(|robot| robot.with_pairs([[0, 2]]));
+    let robot = robot.expect("a chain");
+    let places = (0..40).map(|i| DVec3::new(1.5, 0.2 * f64::from(i) - 2.0, 0.0));
+    let bodies = places.map(|at| Posed::translated(Cylinder::new(0.1, 0.05).expect("positive"), at).expect("finite"));
+    let (scene, mut workspace) = (Scene::new(bodies).expect("finite bodies"), PathWorkspace::new());
+    let [cold, warm] = allocations(|| {
+        for turn in [-3.0, -1.0, -0.2, 0.5, 2.0] {
+            let ways = [[0.0, 0.0, 0.0], [0.3, 0.1, 0.2], [turn, 0.5 * turn, 0.8 * turn]];
+            let _ = black_box(robot.path(&ways, &scene, MotionCastOptions::new(), &mut workspace));
+        }
+    });
+    assert!(cold > 4 && warm == 0, "{cold} allocations, and then {warm}");
 }
 
 /// What is kept is of one type of vectors, and of the largest depth of its thread.

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3Swizzles as _};
 use convex_support::{
-    Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap, support_value,
+    Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap, Vector, support_value,
 };
 use gjk_raycast::{
     Body, HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, Met, MotionCastOptions, Path,
@@ -21,7 +21,12 @@ fn bar() -> Bar {
 
 /// A joint at a place, that turns counter-clockwise.
 fn turning(parent: Option<usize>, at: DVec2) -> Joint<DVec2> {
-    Joint::revolute(parent, Pose { translation: at, ..Pose::default() }, 1.0)
+    Joint { parent, pose: Pose { translation: at, ..Pose::default() }, kind: JointKind::Revolute(1.0) }
+}
+
+/// A joint at the place of its parent.
+fn at_parent<V: Vector>(parent: Option<usize>, kind: JointKind<V>) -> Joint<V> {
+    Joint { parent, pose: Pose::default(), kind }
 }
 
 /// An arm of two bars of length 1.
@@ -127,7 +132,10 @@ fn paths_on_threads_are_answered_as_one_by_one() {
 #[test]
 fn a_joint_slides_along_its_axis() -> Result<(), Box<dyn std::error::Error>> {
     let quarter = Pose { rotation: DQuat::from_rotation_z(FRAC_PI_2), translation: DVec3::Y };
-    let joints = [Joint::fixed(None, quarter), Joint::prismatic(Some(0), Pose::default(), DVec3::NEG_Y * 3.0)];
+    let joints = [
+        Joint { parent: None, pose: quarter, kind: JointKind::Fixed },
+        at_parent(Some(0), JointKind::Prismatic(DVec3::NEG_Y * 3.0)),
+    ];
     let robot = Linkage::new(joints, [Link { joint: Some(1), bodies: vec![Ball::new(0.5)?] }])?;
     let mut scene = Scene::<Ball<DVec3>>::default();
     let wall = scene.insert_half_space(HalfSpace::new(DVec3::NEG_X, -3.0)?);
@@ -275,7 +283,7 @@ fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(
             };
             let mut least = f64::INFINITY;
             let mut near = |distance: f64| least = least.min(distance);
-            for link in 0..robot.len() {
+            for link in 0..robot.links() {
                 for body in placed(link)? {
                     for obstacle in scene.iter().filter_map(|(_, body)| body.convex()) {
                         near(signed_distance(&body, obstacle, SignedDistanceOptions::new()).signed_distance);
@@ -383,12 +391,15 @@ fn what_is_no_linkage_or_path_is_refused_by_its_index() -> Result<(), Box<dyn st
     let joints = |joint: Joint<DVec2>| Linkage::<Bar>::new([turning(None, DVec2::ZERO), joint], []).err();
     let place = |x: f64, rotation: f64| Pose { translation: DVec2::new(x, 0.0), rotation };
     assert_eq!(joints(turning(Some(1), DVec2::X)), Some(LinkageError::ParentNotBefore { joint: 1, parent: 1 }));
-    assert_eq!(joints(Joint::revolute(Some(0), Pose::default(), 0.0)), Some(LinkageError::Axis { joint: 1 }));
-    assert_eq!(joints(Joint::revolute(Some(0), Pose::default(), f64::NAN)), Some(LinkageError::Axis { joint: 1 }));
-    assert_eq!(joints(Joint::prismatic(Some(0), Pose::default(), DVec2::ZERO)), Some(LinkageError::Axis { joint: 1 }));
+    assert_eq!(joints(at_parent(Some(0), JointKind::Revolute(0.0))), Some(LinkageError::Axis { joint: 1 }));
+    assert_eq!(joints(at_parent(Some(0), JointKind::Revolute(f64::NAN))), Some(LinkageError::Axis { joint: 1 }));
+    assert_eq!(joints(at_parent(Some(0), JointKind::Prismatic(DVec2::ZERO))), Some(LinkageError::Axis { joint: 1 }));
     for (pose, parameter) in [(place(f64::NAN, 0.0), "translation"), (place(0.0, f64::INFINITY), "rotation")] {
         let why = InvalidShape::NonFinite { parameter, index: 0 };
-        assert_eq!(joints(Joint::fixed(None, pose)), Some(LinkageError::Pose { joint: 1, why }));
+        assert_eq!(
+            joints(Joint { parent: None, pose, kind: JointKind::Fixed }),
+            Some(LinkageError::Pose { joint: 1, why })
+        );
     }
     let lost = Linkage::new([turning(None, DVec2::ZERO)], [Link { joint: Some(3), bodies: vec![bar()] }]);
     assert_eq!(lost.err(), Some(LinkageError::NoSuchJoint { link: 0, joint: 3 }));
@@ -437,7 +448,10 @@ fn the_largest_numbers_end() {
 fn a_contact_at_the_end_of_a_part_is_one() -> Result<(), Box<dyn std::error::Error>> {
     // By a quarter of a turn: the quaternion is not unit.
     let quarter = Pose { rotation: DQuat::from_xyzw(0.0, 0.0, 1.0, 1.0), translation: DVec3::ZERO };
-    let joints = [Joint::fixed(None, quarter), Joint::prismatic(Some(0), Pose::default(), DVec3::NEG_Y * 2.0)];
+    let joints = [
+        Joint { parent: None, pose: quarter, kind: JointKind::Fixed },
+        at_parent(Some(0), JointKind::Prismatic(DVec3::NEG_Y * 2.0)),
+    ];
     let robot = Linkage::new(joints, [Link { joint: Some(1), bodies: vec![Ball::new(0.5)?] }])?;
     let mut scene = Scene::<Ball<DVec3>>::default();
     scene.insert_half_space(HalfSpace::new(DVec3::NEG_X * 2.0, -6.0)?);
@@ -461,7 +475,7 @@ fn a_contact_at_the_end_of_a_part_is_one() -> Result<(), Box<dyn std::error::Err
 #[test]
 fn a_contact_at_a_waypoint_is_one() -> Result<(), Box<dyn std::error::Error>> {
     let robot = Linkage::new(
-        [Joint::prismatic(None, Pose::default(), DVec3::X)],
+        [at_parent(None, JointKind::Prismatic(DVec3::X))],
         [Link { joint: Some(0), bodies: vec![Ball::new(0.5)?] }],
     )?;
     let mut scene = Scene::new([Posed::translated(Ball::new(0.3)?, DVec3::new(2.9, 0.0, 0.0))?])?;
@@ -616,7 +630,10 @@ fn a_link_goes_no_farther_than_its_way() -> Result<(), Box<dyn std::error::Error
 fn brackets_hold_in_single_precision() -> Result<(), Box<dyn std::error::Error>> {
     let bar = Rounded::new(Segment::new([Vec2::ZERO, Vec2::X])?, 0.0625)?;
     let elbow = Pose { translation: Vec2::X, ..Pose::default() };
-    let joints = [Joint::revolute(None, Pose::default(), 1.0), Joint::revolute(Some(0), elbow, -1.0)];
+    let joints = [
+        at_parent(None, JointKind::Revolute(1.0)),
+        Joint { parent: Some(0), pose: elbow, kind: JointKind::Revolute(-1.0) },
+    ];
     let robot = Linkage::new(joints, [0, 1].map(|joint| Link { joint: Some(joint), bodies: vec![bar] }))?;
     for k in 0..10_u8 {
         let (x, y) = (0.75 - 0.0625 * f32::from(k), 0.5 + 0.125 * f32::from(k));

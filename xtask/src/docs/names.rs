@@ -31,9 +31,12 @@ const FOREIGN: &[&str] = &[
     "PersistentQueryDispatcher",
     "Rot2",
     "Rot3",
+    "TrackedContact",
     "Unsupported",
     "compute_impact_geometry_on_penetration",
     "contact_manifolds",
+    "local_p1",
+    "local_p2",
     "normal1",
     "witness1",
     // other crates and programs

@@ -132,7 +132,7 @@ impl<V: Space> Question for Way<V> {
             }
             (None, None) => answer(true).with("certain", Field::Flag(true)),
         };
-        Ok(answer.with("casts", Field::Count(path.work.casts)))
+        Ok(answer.with("casts", Field::Count(path.casts)))
     }
 }
 

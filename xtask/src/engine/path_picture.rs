@@ -40,7 +40,7 @@ pub(super) fn svg(
             .collect()
     };
     let posed = |values: &[f64]| -> Option<Vec<Vec<DVec2>>> {
-        let bodies = (0..robot.len()).flat_map(|link| (0..robot.bodies(link).len()).map(move |body| (link, body)));
+        let bodies = (0..robot.links()).flat_map(|link| (0..robot.bodies(link).len()).map(move |body| (link, body)));
         bodies.map(|(link, body)| Some(outline(&robot.placed(link, body, values).ok()?))).collect()
     };
     let at = |edge: usize, time: f64| -> Vec<f64> {

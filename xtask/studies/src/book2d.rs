@@ -145,7 +145,7 @@ fn svg(figure: &Figure, steps: &[Step], end: &Distance<DVec2>) -> String {
     let rows = panels.len().div_ceil(columns);
     let mut svg = format!(
         "<svg viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\" fill=\"none\" \
-         font-family=\"system-ui, sans-serif\" font-size=\"13\">\n<title>Descent of GJK on the {}</title>\n\
+         font-family=\"system-ui, sans-serif\" font-size=\"17\">\n<title>Descent of GJK on the {}</title>\n\
          <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
         columns as f64 * PANEL.x,
         rows as f64 * PANEL.y,
@@ -156,7 +156,7 @@ fn svg(figure: &Figure, steps: &[Step], end: &Distance<DVec2>) -> String {
         let _ = writeln!(
             svg,
             "<g transform=\"translate({} {})\"><path d=\"{outline}Z\" stroke=\"#000\" stroke-opacity=\".5\"/>\
-             {}{drawing}<text x=\"12\" y=\"18\" fill=\"#000\">{caption}</text></g>",
+             {}{drawing}<text x=\"12\" y=\"22\" fill=\"#000\">{caption}</text></g>",
             corner.x,
             corner.y,
             dot(DVec2::ZERO, "origin", "#000")

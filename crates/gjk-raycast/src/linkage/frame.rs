@@ -5,19 +5,19 @@ use num_traits::Float as _;
 
 use crate::Pose;
 
-/// What a product of a rotation and a unit vector loses, in ε: `n·√n/2` for `n` dimensions.
+/// A bound on the rounding error of the product of a rotation and a unit vector, in ε: `n·√n/2` for `n` dimensions.
 const OF_VECTOR: f64 = 2.6;
 
-/// What a product of two rotations loses as an operator, in ε: each entry `n/2`, and so the root of the sum of their
-/// squares `n²/2`.
+/// A bound on the rounding error of the product of two rotations as an operator, in ε. Each entry is wrong by no more
+/// than `n/2`, so that the root of the sum of all squared entries is no more than `n²/2`.
 const OF_MATRIX: f64 = 4.5;
 
-/// A rotation, then a translation, and bounds on what both are wrong by.
+/// A rotation followed by a translation, with a bound on the error of each.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LinkFrame<V: Vector> {
     pub(super) rotation: V::Matrix,
     pub(super) translation: V,
-    /// How far the matrix may take a unit vector from where the rotation does.
+    /// How far the matrix may take a unit vector from where the exact rotation takes it.
     pub(super) turn_error: V::Scalar,
     /// How far the translation may be from the exact one.
     pub(super) shift_error: V::Scalar,
@@ -32,7 +32,7 @@ impl<V: Vector> LinkFrame<V> {
         shift_error: V::Scalar::ZERO,
     };
 
-    /// The frame at a pose.
+    /// The frame with this pose.
     pub(super) fn at(pose: Pose<V>) -> Result<Self, InvalidShape> {
         if let Some(index) = (0..V::DIM).find(|&i| !pose.translation.get(i).is_finite()) {
             return Err(InvalidShape::NonFinite { parameter: "translation", index });
@@ -48,12 +48,12 @@ impl<V: Vector> LinkFrame<V> {
         })
     }
 
-    /// Whether nothing is moved.
+    /// Whether this is exactly the frame of the world.
     pub(super) fn is_world(&self) -> bool {
         self.rotation == Matrix::IDENTITY && self.translation == V::ZERO && self.turn_error == V::Scalar::ZERO
     }
 
-    /// The frame that is at `inner` in this one.
+    /// The frame whose place in this one is `inner`.
     #[inline]
     pub(super) fn then(&self, inner: &Self) -> Self {
         if inner.is_world() {
@@ -67,17 +67,18 @@ impl<V: Vector> LinkFrame<V> {
         }
     }
 
-    /// The frame moved along an arm of its own, whose length and error are known.
+    /// The frame moved by `arm`, a vector in its own coordinates that has this length and is wrong by no more than
+    /// `error`.
     #[inline]
     pub(super) fn moved(&self, arm: V, length: V::Scalar, error: V::Scalar) -> Self {
         let translation = self.translation + self.rotation * arm;
-        // The sum is rounded once, coordinate by coordinate.
+        // Each coordinate of the sum is rounded once.
         let rounded = translation.abs().max_element() + length * V::Scalar::from_f64(OF_VECTOR);
         let lost = rounded * V::Scalar::EPSILON;
         Self { translation, shift_error: self.shift_error + error + self.turn_error * length + lost, ..*self }
     }
 
-    /// The frame that takes back what this one does.
+    /// The inverse of this frame.
     pub(super) fn inverse(&self) -> Self {
         if self.is_world() {
             return *self;
@@ -87,13 +88,14 @@ impl<V: Vector> LinkFrame<V> {
         back.moved(-self.translation, self.translation.norm(), V::Scalar::ZERO)
     }
 
-    /// Where a point of the frame is.
+    /// Where a point of this frame is in the frame around it.
     #[inline]
     pub(super) fn of(&self, point: V) -> V {
         self.translation + self.rotation * point
     }
 
-    /// How far a point of the frame, at most so far from its origin, may be from where it should be.
+    /// A bound on the error of [`of`](Self::of), for points that are no farther than `distance` from this frame's
+    /// origin.
     pub(super) fn error_of(&self, distance: V::Scalar) -> V::Scalar {
         self.shift_error
             + (self.turn_error + epsilons(OF_VECTOR)) * distance
@@ -101,7 +103,7 @@ impl<V: Vector> LinkFrame<V> {
     }
 }
 
-/// So many ε.
+/// This many ε.
 pub(super) fn epsilons<S: Scalar>(count: f64) -> S {
     S::EPSILON * S::from_f64(count)
 }

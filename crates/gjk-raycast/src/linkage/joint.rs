@@ -1,4 +1,4 @@
-//! The parts of a linkage, and the motion of a frame at the end of some joints, at one moment.
+//! The parts of a linkage, and the motion at one time of a frame that some joints carry.
 
 use convex_support::numerics::elementary::sin_cos;
 use convex_support::{Matrix as _, Scalar, SupportMap, Vector};
@@ -39,32 +39,14 @@ pub struct Link<S: SupportMap> {
     pub bodies: alloc::vec::Vec<S>,
 }
 
-impl<V: Vector> Joint<V> {
-    /// A joint that turns about an axis, at a pose in its parent's frame.
-    #[must_use]
-    pub fn revolute(parent: Option<usize>, pose: Pose<V>, axis: V::AngularVelocity) -> Self {
-        Self { parent, pose, kind: JointKind::Revolute(axis) }
-    }
-
-    /// A joint that slides along an axis.
-    #[must_use]
-    pub fn prismatic(parent: Option<usize>, pose: Pose<V>, axis: V) -> Self {
-        Self { parent, pose, kind: JointKind::Prismatic(axis) }
-    }
-
-    /// A joint that does not move.
-    #[must_use]
-    pub fn fixed(parent: Option<usize>, pose: Pose<V>) -> Self {
-        Self { parent, pose, kind: JointKind::Fixed }
-    }
-}
-
-/// A bound on the error of a rotation about an axis as an operator, in ε, besides the error of its angle. The unit
-/// axis is wrong by 1.5, which counts twice. The term of the sine loses 3 and that of `1 − cos ≤ 2` twice 6; sine and
-/// cosine themselves 3, and the sum of the terms 5. The product with the rotation before it loses 4.5.
+/// A bound on the error of a rotation about an axis as an operator, in ε, apart from the error of its angle. It is the
+/// sum of 3 for the unit axis, which is wrong by 1.5 and occurs twice; 3 for the term of the sine; 12 for the term of
+/// `1 − cos`, which is no more than 2; 3 for the sine and the cosine themselves; 5 for the sum of the terms; and 4.5
+/// for the product with the rotation before it.
 const OF_TURN: f64 = 31.0;
 
-/// The step from one moving joint to the next, and its motion: `x ↦ fixed·motion(value)·x`.
+/// A moving joint as one stage of a chain: its fixed frame, as the moving joint before it sees it, and then its own
+/// motion, `x ↦ fixed·motion(value)·x`.
 #[derive(Clone, Debug)]
 pub(super) struct JointStage<V: Vector> {
     /// Its frame in that of the moving joint before it, at the value 0.
@@ -73,16 +55,16 @@ pub(super) struct JointStage<V: Vector> {
     pub(super) arm: V::Scalar,
     /// The distance of its origin from the axis of the joint before it.
     pub(super) off_axis: V::Scalar,
-    /// A unit vector in its own frame, along which it turns or slides.
+    /// The unit vector, in its own frame, about which it turns or along which it slides.
     pub(super) axis: V,
-    /// For a joint that turns: with `A` the matrix of the product with the axis, the rotation is
-    /// `1 + sin·A + (1 − cos)·A²` (Rodrigues), and these are its terms as the fixed rotation turns them.
+    /// For a joint that turns, the matrices `F·A` and `F·A²`, where `F` is the fixed rotation and `A·x = axis × x`.
+    /// Together the two rotate by `F·(1 + sin·A + (1 − cos)·A²)` (Rodrigues).
     turn: Option<[V::Matrix; 2]>,
     /// The place of its value among the joint values.
     pub(super) column: usize,
 }
 
-/// A value of a joint at a moment, and how fast it changes.
+/// The value of a joint at one time, and how fast it changes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Value<S> {
     pub(super) value: S,
@@ -91,12 +73,12 @@ pub(super) struct Value<S> {
     pub(super) error: S,
 }
 
-/// A frame that moves, with the first two derivatives of its place by time, where all joint values change at constant
-/// rates. Only the frame has a bound on its error; the derivatives have none.
+/// A moving frame at one time, with the first and second derivatives of its pose, where all joint values change at
+/// constant rates. The frame carries a bound on its error, and the derivatives do not.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moving<V: Vector> {
     pub(super) frame: LinkFrame<V>,
-    /// The angular velocity, as of [`axial`], and its derivative.
+    /// The angular velocity, as [`axial`] writes it, and its derivative.
     pub(super) spin: V,
     pub(super) spin_rate: V,
     /// The velocity and the acceleration of the frame's origin.
@@ -121,7 +103,7 @@ impl<V: Vector> JointStage<V> {
         Self { arm: fixed.translation.norm(), off_axis: V::Scalar::ZERO, fixed, axis, turn, column }
     }
 
-    /// The stage that moves as this one does, from another frame on; or that takes it back, with the sign -1.
+    /// This stage with another fixed frame. With the sign −1 its motion is the inverse one.
     pub(super) fn from(&self, fixed: LinkFrame<V>, sign: V::Scalar) -> Self {
         Self::about(fixed, self.axis * sign, self.turns(), self.column)
     }
@@ -130,13 +112,14 @@ impl<V: Vector> JointStage<V> {
         self.turn.is_some()
     }
 
-    /// Its axis and its origin, by its moved frame.
+    /// Its axis and its origin in the world, if its moved frame is there.
     pub(super) fn placed(&self, frame: &LinkFrame<V>) -> [V; 2] {
         let axis = if self.turns() { axial::turned(&frame.rotation, self.axis) } else { frame.rotation * self.axis };
         [axis, frame.translation]
     }
 
-    /// The speed of a point along `n` as the value changes, with this axis and origin.
+    /// How much the height of a point along `n` grows per unit of the joint value, given the axis and the origin in the
+    /// world.
     pub(super) fn rise(&self, [axis, origin]: [V; 2], n: V, point: V) -> V::Scalar {
         n.dot(if self.turns() { axial::turning(axis, point - origin) } else { axis })
     }
@@ -161,11 +144,11 @@ impl<V: Vector> Moving<V> {
         self.acceleration + axial::turning(self.spin_rate, arm) + turning
     }
 
-    /// The frame beyond a stage.
+    /// The frame that a stage at this value leads to from this one.
     ///
-    /// Its origin is a point of this frame, or slides along it. It has the angular velocity `ω + w` with the joint's
-    /// own `w`, which this frame turns, so that its derivative is `ω′ + ω × w`. If the joint slides at `d`, the
-    /// acceleration is larger by `2ω × d` than that of a point of this frame (Coriolis).
+    /// Its origin is a point of this frame, or slides along it. Its angular velocity is `ω + w`, where `w` is the
+    /// joint's own. Since this frame turns `w`, the derivative of the sum is `ω′ + ω × w`. If the joint slides with the
+    /// velocity `d`, its origin has the acceleration of a point of this frame plus `2ω × d` (Coriolis).
     #[inline]
     pub(super) fn beyond(&self, stage: &JointStage<V>, Value { value, rate, error }: Value<V::Scalar>) -> Self {
         let &JointStage { ref fixed, arm, axis, ref turn, .. } = stage;
@@ -186,7 +169,7 @@ impl<V: Vector> Moving<V> {
             };
         }
         let (along, length) = (fixed.rotation * axis, value.abs());
-        // The axis is turned, and wrong by 1.5ε before; the product and the sum are rounded.
+        // The axis is wrong by 1.5ε before it is turned, and the product and the sum are rounded.
         let lost = (fixed.turn_error + epsilons(6.0)) * (length + arm);
         let moved = self.frame.moved(fixed.translation + along * value, arm + length, fixed.shift_error + error + lost);
         let turn_error = moved.turn_error + fixed.turn_error + epsilons(4.5);

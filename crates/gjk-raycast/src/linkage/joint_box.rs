@@ -1,20 +1,22 @@
 //! Whether two links ever meet, at any positions of their joints.
 //!
-//! A box of joint values is free if one plane proves it. In the middle of the box let the plane across `n` separate
-//! the first link's points `x` from the second link, in the frame of the second. If joint `j` changes by up to `δⱼ`,
-//! all at constant rates within a unit of time, a point sinks towards the plane by no more than
+//! A box of joint values is proved to be free by one plane. All is seen in the frame of the second link. In the middle
+//! of the box the plane across the unit vector `n` separates the two links. If each joint `j` changes by up to `δⱼ`, at
+//! a constant rate within a unit of time, a point `x` of the first link comes nearer to the plane by no more than
 //!
 //! > Σ δⱼ·|mⱼ·(x − cⱼ)| + a/2,   mⱼ = n × axisⱼ,
 //!
-//! The first term is `n·ẋ` in the middle, with `cⱼ` the joint's origin, and `a` bounds the acceleration whatever the
-//! joint values. The least of `n·x` less this sum, over all points of the body, is a support value for each choice of
-//! signs: each point counts with its own path, and those far from the plane may sink far.
+//! The sum is the largest `|n·ẋ|` in the middle, with `cⱼ` the joint's origin, and `a` bounds the acceleration at all
+//! joint values. So the box is free if `n·x` less this amount stays above the plane for all points of the body. For
+//! each choice of the signs of the products this least height is a support value. Each point counts with its own path:
+//! one that is far from the plane may come much nearer.
 //!
-//! A box that is not proved free is halved along the joint where halving improves the bound most. The order of the
-//! boxes decides how soon a pose is found where the links meet. Mostly the next box is the one with the least gap in
-//! its middle, times the third power of the ratio of the gap to the most that points may sink. Yet about a place
-//! where the links almost meet there may be tens of thousands of boxes that all seem near to contact. So every fourth
-//! time the largest box comes first, and no part of the whole has to wait until those are done.
+//! A box that is not proved to be free is halved along the joint for which halving improves the bound most. The order
+//! of the boxes decides how soon a pose is found in which the links meet. Three times out of four the next box is the
+//! one with the least `g·(g/s)³`, where `g` is the gap in its middle and `s` the most by which points may come nearer.
+//! But around a place where the links almost meet there may be tens of thousands of boxes that all seem to be near
+//! contact. So every fourth time the largest box comes next, and no part of the whole box has to wait until those are
+//! done.
 
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
@@ -35,10 +37,11 @@ use crate::axial;
 use crate::ray::check_limits;
 use crate::{SignedDistanceOptions, signed_distance};
 
-/// If there are more joints than this, the sign of each is chosen alone.
+/// The number of joints whose signs are tried in all combinations. For each joint beyond these, the worst sign is taken
+/// by itself.
 const MAX_SIGNS: usize = 5;
 
-/// One of so many parts that are halved is the largest one that is still undecided.
+/// One in this many parts that are halved is the largest part that is still undecided.
 const LARGEST_EVERY: usize = 4;
 
 /// The answer of [`Linkage::joint_box`].
@@ -138,7 +141,7 @@ impl<S: SupportMap> Linkage<S> {
         let pairs = (0..bodies[0].len()).flat_map(|i| (0..bodies[1].len()).map(move |k| [i, k]));
         let whole = |bodies| BoxPart { bodies, joint_box: joint_box.to_vec(), share: ScalarOf::<S>::ONE };
         let mut next: Vec<_> = pairs.map(whole).collect();
-        // Those that are open, and their indices in the two orders.
+        // The parts that are undecided, and their indices in the two orders.
         let (mut open, mut orders) = (Vec::new(), [const { BinaryHeap::new() }; 2]);
         let (mut boxes, mut share) = (0, ScalarOf::<S>::ZERO);
         for turn in 1_usize.. {
@@ -157,7 +160,7 @@ impl<S: SupportMap> Linkage<S> {
                         }
                         open.push(Some((part, column)));
                     }
-                    // Where no joint moves them any more, nothing is left to halve.
+                    // If no joint moves the bodies against one another, there is nothing to halve.
                     BoxState::Open { column: None, .. } => share += part.share,
                 }
             }
@@ -183,21 +186,22 @@ struct BoxPart<S> {
     share: S,
 }
 
-/// The state of a part.
+/// What is known of a part.
 enum BoxState<V: Vector> {
-    /// A plane across this separates the bodies in all of it.
+    /// A plane across this normal separates the bodies at all of its joint values.
     Free {
         normal: V,
     },
     Meets,
-    /// A number that orders parts, the least of which is to be halved first, and the value to halve.
+    /// Neither is known. Of several such parts the one with the least `after` is to be halved first, along the joint
+    /// value of this column; `None` if no joint moves the bodies.
     Open {
         after: V::Scalar,
         column: Option<usize>,
     },
 }
 
-/// Tests two bodies in a part of the box, with a route from the second's link to the first's.
+/// Tests two bodies in a part of the box, given the route from the link of the second to that of the first.
 fn look<V: Vector, S: SupportMap<Vector = V>>(
     route: &Route<V>,
     target: V::Scalar,
@@ -222,11 +226,11 @@ fn look<V: Vector, S: SupportMap<Vector = V>>(
     }
     let frame = moving.frame.then(tail);
     let Ok(a) = Posed::from_matrix(a, frame.rotation, frame.translation) else {
-        // Numbers as large as that are not known any better at other joints.
+        // The place is not finite, and no more will be known after halving.
         return BoxState::Open { after: zero, column: stages.first().map(|stage| stage.column) };
     };
     let answer = signed_distance(&a, b, SignedDistanceOptions::new());
-    // The matrix was made orthonormal, which moves it by no more than it was wrong.
+    // `Posed` makes the matrix orthonormal, which changes it by no more than its error. So the error counts twice.
     let error = raised(frame.error_of(reach) * two);
     if answer.upper + error <= target {
         return BoxState::Meets;
@@ -253,12 +257,13 @@ fn look<V: Vector, S: SupportMap<Vector = V>>(
     let bent_by = |half: &dyn Fn(usize) -> V::Scalar| route.bounds(half, slide).acceleration.of(reach) / two;
     let bent = bent_by(&half);
     let shapes = a.core().error + b.core().error;
-    // Directions are longer than one by what the joints turn.
+    // The directions of the support values are as long as 1 plus the angles by which the joints turn.
     let lost = (error + shapes + epsilons::<V::Scalar>(64.0) * size) * turned + bent * epsilons(64.0);
     if level - bent - raised(lost) > target {
         return BoxState::Free { normal: n };
     }
-    // What halving takes off the way of the nearest point at first, and off what bends it.
+    // What halving one interval saves of both terms for the nearest point: its speed, and the bound on the
+    // acceleration.
     let gain = |(stage, axis): (&JointStage<V>, &[V; 2])| {
         let halved = |column| half(column) / if column == stage.column { two } else { one };
         let first = half(stage.column) * stage.rise(*axis, n, answer.point_a).abs() / two;
@@ -271,8 +276,9 @@ fn look<V: Vector, S: SupportMap<Vector = V>>(
     BoxState::Open { after: gap * part * part * part, column: best.map(|(_, column)| column) }
 }
 
-/// A lower bound of `n·x − Σ |change·x − offset|` over the points of a body, given its least height along a
-/// direction: the least over all signs of the changes, or if they are many the sum of the least of each.
+/// A lower bound of `n·x − Σ |change·x − offset|` over all points `x` of a body, where `height` is the body's least
+/// height along a direction. It is the least over all signs of the products. If there are many, each one beyond
+/// [`MAX_SIGNS`] counts with its own greatest value, which is less tight.
 fn least_height<V: Vector>(height: &impl Fn(V) -> V::Scalar, n: V, changes: &[(V, V::Scalar)]) -> V::Scalar {
     let [rest @ .., (change, offset)] = changes else { return height(n) };
     if changes.len() > MAX_SIGNS {
@@ -285,7 +291,7 @@ fn least_height<V: Vector>(height: &impl Fn(V) -> V::Scalar, n: V, changes: &[(V
 }
 
 impl<S: Scalar> BoxPart<S> {
-    /// Both halves along a value, which meet in the middle.
+    /// Both halves of the part along one joint value.
     fn halves(mut self, column: usize) -> [Self; 2] {
         let [low, high] = self.joint_box[column];
         let at = middle([low, high]);
@@ -302,7 +308,7 @@ fn middle<S: Scalar>([low, high]: [S; 2]) -> S {
     low * S::from_f64(0.5) + high * S::from_f64(0.5)
 }
 
-/// A number as one that has the order of numbers.
+/// An integer in place of a number, in the same order.
 fn in_order<S: Scalar>(number: S) -> i64 {
     let bits = number.as_f64().to_bits() as i64;
     bits ^ ((bits >> 63) & i64::MAX)

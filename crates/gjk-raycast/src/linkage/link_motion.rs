@@ -1,4 +1,4 @@
-//! The way from the world, or from another link, to a link, and the motion of the link along an edge of a path.
+//! The joints between the world, or another link, and a link, and the motion of that link along an edge of a path.
 
 use alloc::vec::Vec;
 use core::cell::Cell;
@@ -28,7 +28,8 @@ impl<V: Vector> Route<V> {
         Self { stages, tail }
     }
 
-    /// The bounds for points that it carries, if its joints change at these rates, and slide no farther than `slides`.
+    /// The bounds for points of the link, if the joint values change at these rates, and no joint slides farther than
+    /// `slides` says. Both are asked for by the column of the joint value.
     pub(super) fn bounds(
         &self,
         rates: impl Fn(usize) -> V::Scalar,
@@ -52,11 +53,12 @@ impl<V: Vector> Route<V> {
         self.tail.of(point).norm()
     }
 
-    /// The route to a frame from another, each given by its way from the world: back along the one to where they part,
-    /// and on along the other.
+    /// The route from one frame to another, each of which is given by its route from the world. It goes back along the
+    /// first route to the last joint that both share, and from there along the second.
     ///
-    /// With `F` for what is fixed and `M` for what moves, `(F₁M₁…FₙMₙT)⁻¹` is `T⁻¹·Mₙ⁻¹·Fₙ⁻¹·…·M₁⁻¹·F₁⁻¹`: the stages
-    /// of the way back have the fixed parts of the stages after them.
+    /// With the fixed frames `F`, the motions `M` and the tail `T`, the inverse of `F₁M₁…FₙMₙT` is
+    /// `T⁻¹·Mₙ⁻¹·Fₙ⁻¹·…·M₁⁻¹·F₁⁻¹`. So on the way back the motion of each stage comes after the inverse of the fixed
+    /// frame that used to follow it.
     pub(super) fn between(from: &Self, to: &Self) -> Self {
         let shared = from.stages.iter().zip(&to.stages).take_while(|(a, b)| a.column == b.column).count();
         let mut fixed = from.tail.inverse();
@@ -84,8 +86,8 @@ pub(super) struct PathEdge<'p, S> {
 impl<S: Scalar> PathEdge<'_, S> {
     /// A joint value at a time.
     ///
-    /// With `u = ε/2`, the time was rounded once, and the rate, its product with the time and the sum are: by `3u` of
-    /// the rate and `u` of the larger value.
+    /// With `u = ε/2`, the roundings of the time, of the rate and of their product change the value by no more than
+    /// `3u` of the rate, and the rounding of the sum changes it by no more than `u` of the larger value.
     #[inline]
     pub(super) fn at(&self, column: usize, time: S) -> Value<S> {
         let (from, to) = (self.from[column], self.to[column]);
@@ -100,7 +102,7 @@ impl<S: Scalar> PathEdge<'_, S> {
         route.bounds(rate, |column| self.from[column].abs().max(self.to[column].abs()))
     }
 
-    /// How the frame of the last joint on a route moves at a time, and where that of the link is.
+    /// How the frame of the last joint of a route moves at a time, and where the frame of the link is.
     pub(super) fn place<V: Vector<Scalar = S>>(&self, route: &Route<V>, time: S) -> (Moving<V>, LinkFrame<V>) {
         let stages = route.stages.iter();
         let moving = stages.fold(Moving::WORLD, |moving, stage| moving.beyond(stage, self.at(stage.column, time)));
@@ -108,13 +110,14 @@ impl<S: Scalar> PathEdge<'_, S> {
     }
 }
 
-/// The motion of a link from a time of an edge on: from where it is in its own frame to where its joints have it.
+/// The motion of a link from a time of an edge on. Its displacement takes a body from its place in the link's own frame
+/// to where the joints have it.
 pub(super) struct LinkMotion<'l, V: Vector> {
     route: &'l Route<V>,
     pub(super) edge: PathEdge<'l, V::Scalar>,
     bounds: Bounds<V::Scalar>,
     start: V::Scalar,
-    /// What was last computed, which is mostly asked for several times.
+    /// The result of the last call of [`at`](Self::at), since most times are asked for more than once.
     last: Cell<(V::Scalar, Moving<V>, LinkFrame<V>)>,
 }
 
@@ -130,7 +133,7 @@ impl<'l, V: Vector> LinkMotion<'l, V> {
         Self { route, edge, bounds, start, last }
     }
 
-    /// What is at a time, as of [`PathEdge::place`].
+    /// What [`PathEdge::place`] says of a time after the start.
     pub(super) fn at(&self, time: V::Scalar) -> (Moving<V>, LinkFrame<V>) {
         let (known, moving, frame) = self.last.get();
         if known == time {
@@ -151,7 +154,7 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
             pivot: V::ZERO,
             shift: frame.translation,
             turn: frame.rotation - V::Matrix::IDENTITY,
-            // The difference, and a product with it.
+            // The last term is for the difference, and for a product with it.
             turn_error: if frame.is_world() { frame.turn_error } else { raised(frame.turn_error + epsilons(8.0)) },
             shift_error: raised(frame.shift_error),
         }
@@ -161,13 +164,14 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
         self.at(time).0.velocity_at(point)
     }
 
-    /// What holds at all times ([`Bounds`]), or what holds near the end of the interval, if that is less. With the
-    /// ball's centre `c` and its radius `ρ`, and a time `t` before the end at `e`,
+    /// The bound that holds at all times ([`Bounds`]), or the bound near the end of the interval, if that is less. Let
+    /// `c` be the centre of the ball, `ρ` its radius, `e` the end of the interval and `t` a time before it. Then
     ///
     /// > n·ẍ ≤ n·c̈(e) + |n|·(j·(e − t) + ρ·b),   r·ẋ ≤ r·ċ(e) + |r|·(a·(e − t) + ρ·w),
     ///
-    /// where `w` bounds the angular velocity `ω`, and `b = |ω′(e)| + |ω(e)|²` and what that grows by: `ω′` is a sum of
-    /// products of two rates and so no more than `w²`, and its derivative no more than `w³`.
+    /// where `a` and `j` bound the acceleration and the jerk of the centre, `w` bounds the angular velocity `ω`, and
+    /// `b` bounds `|ω′| + |ω|²` in the interval. At its end `ω` and `ω′` are known. In between `ω` changes by no more
+    /// than `w²` per unit of time, as `ω′` is a sum of products of two rates, and `ω′` by no more than `w³`.
     fn acceleration_along(
         &self,
         ball: BoundingSphere<V>,
@@ -176,7 +180,7 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
     ) -> V::Scalar {
         let (bounds, distance, duration) = (&self.bounds, self.route.distance(ball.center), end - start);
         let always = bounds.along(plane, interval, distance + ball.radius);
-        // Not where it cannot be less, or the interval has no end.
+        // In so long an interval the second bound is not less. It may also have no end.
         if !(bounds.spin * duration < V::Scalar::ONE) {
             return always;
         }
@@ -191,9 +195,9 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
             + longest * (bounds.jerk.of(distance) * duration + ball.radius * bending);
         let turning = rate.dot(moving.velocity_at(center))
             + rate.norm() * (bounds.acceleration.of(distance) * duration + ball.radius * w);
-        // Where the frame is, and what the derivatives lose, is a small part of what always holds.
+        // The errors of the frame and of the derivatives are a small part of the bound that always holds.
         let near = along + V::Scalar::from_f64(2.0) * turning + always * (frame.turn_error + epsilons(64.0));
-        // NaN is no bound.
+        // A NaN is not taken for a bound.
         if near < always { near } else { always }
     }
 }

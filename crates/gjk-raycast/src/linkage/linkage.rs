@@ -65,10 +65,10 @@ pub struct Linkage<S: SupportMap> {
 /// The part of a linkage that does not depend on its shapes.
 #[derive(Clone, Debug)]
 pub(super) struct Skeleton<V: Vector> {
-    /// The joints that move, each after the one that carries it, whose index is beside it.
+    /// The joints that move, each with the index of the moving joint that carries it, which comes before it.
     pub(super) stages: Vec<(Option<usize>, JointStage<V>)>,
     pub(super) links: Vec<LinkBalls<V>>,
-    /// Each link in the frame of the world, and after them the pairs to be tested.
+    /// One view of each link from the world, and after these one of each pair to be tested.
     pub(super) views: Vec<LinkView<V>>,
 }
 
@@ -97,7 +97,8 @@ impl<S: SupportMap> Linkage<S> {
         links: impl IntoIterator<Item = Link<S>>,
     ) -> Result<Self, LinkageError> {
         let mut stages: Vec<(Option<usize>, JointStage<S::Vector>)> = Vec::new();
-        // Of each joint, the last that moves, itself included, and its own frame beyond that.
+        // For each joint, the index of the last moving joint up to and including it, and its own frame as seen from
+        // there.
         let mut places: Vec<(Option<usize>, LinkFrame<S::Vector>)> = Vec::new();
         for (index, Joint { parent, pose, kind }) in joints.into_iter().enumerate() {
             let (before, frame) = match parent {
@@ -141,7 +142,7 @@ impl<S: SupportMap> Linkage<S> {
     /// # Errors
     /// [`LinkageError::Pair`] for the first pair that is not of two links.
     pub fn with_pairs(mut self, pairs: impl IntoIterator<Item = [usize; 2]>) -> Result<Self, LinkageError> {
-        self.skeleton.views.truncate(self.len());
+        self.skeleton.views.truncate(self.links());
         for (pair, links) in pairs.into_iter().enumerate() {
             let route = self.skeleton.between(links).ok_or(LinkageError::Pair { pair })?;
             self.skeleton.views.push(LinkView { link: links[0], base: Some(links[1]), route });
@@ -157,14 +158,8 @@ impl<S: SupportMap> Linkage<S> {
 
     /// The number of links.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn links(&self) -> usize {
         self.bodies.len()
-    }
-
-    /// Whether there are no links.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.bodies.is_empty()
     }
 
     /// The bodies of a link, in the frame of its joint; none if there is no such link.
@@ -221,7 +216,7 @@ impl<S: SupportMap> Linkage<S> {
         };
         let near = at_first + bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
         let always = bounds.speed.of(reach);
-        // What the frame and the derivatives lose is a small part of what always holds.
+        // The errors of the frame and of the derivatives are a small part of the bound that always holds.
         Ok(near.min(always) + always * (moving.frame.turn_error + epsilons(64.0)))
     }
 
@@ -237,10 +232,10 @@ impl<S: SupportMap> Linkage<S> {
     ///
     /// ```
     /// use convex_support::{Ball, glam::DVec2};
-    /// use gjk_raycast::{HalfSpace, Joint, Link, Linkage, MotionCastOptions, PathWorkspace, Pose, Scene};
+    /// use gjk_raycast::{HalfSpace, Joint, JointKind, Link, Linkage, MotionCastOptions, PathWorkspace, Pose, Scene};
     ///
     /// // A ball of radius 1 slides from x = 0 to 4, and meets a wall at x = 3 when half of that is done.
-    /// let slide = Joint::prismatic(None, Pose::default(), DVec2::X);
+    /// let slide = Joint { parent: None, pose: Pose::default(), kind: JointKind::Prismatic(DVec2::X) };
     /// let robot = Linkage::new([slide], [Link { joint: Some(0), bodies: vec![Ball::new(1.0)?] }])?;
     /// let mut scene = Scene::<Ball<DVec2>>::default();
     /// scene.insert_half_space(HalfSpace::new(DVec2::NEG_X, -3.0)?);
@@ -281,7 +276,7 @@ impl<S: SupportMap> Linkage<S> {
         (closing > Scalar::ZERO).then(|| rises.into_iter().map(by_values).collect())
     }
 
-    /// Whether these are values of all joints.
+    /// Checks that these are finite values, one for each joint that moves.
     pub(super) fn check(&self, waypoint: usize, values: &[ScalarOf<S>]) -> Result<(), LinkageError> {
         if values.len() != self.values() {
             return Err(LinkageError::Count { waypoint, joints: self.values(), values: values.len() });

@@ -15,5 +15,5 @@ pub use error::LinkageError;
 pub use joint::{Joint, JointKind, Link};
 pub use joint_box::{JointBox, JointBoxOutcome};
 pub use linkage::Linkage;
-pub use result::{FreeBox, FreeInterval, Met, Path, PathContact, PathWork};
+pub use result::{FreeBox, FreeInterval, Met, Path, PathContact};
 pub use sweep::PathWorkspace;

@@ -6,7 +6,7 @@ use num_traits::Float;
 use super::error::LinkageError;
 use super::link_motion::{LinkMotion, PathEdge};
 use super::linkage::{LinkView, Linkage};
-use super::result::{FreeInterval, Met, Path, PathContact, PathWork, ProvedSteps};
+use super::result::{FreeInterval, Met, Path, PathContact, ProvedSteps};
 use super::sweep::{Near, PathWorkspace, Sweep};
 use crate::motion::checked;
 use crate::{Body, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene, StartInContact};
@@ -83,15 +83,15 @@ impl<S: SupportMap> Linkage<S> {
         workspace: &mut PathWorkspace<S::Vector>,
         mut observer: Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<Path<S::Vector>, LinkageError> {
-        // What is in contact as a part of an edge begins is so, whatever was before.
+        // A contact at the beginning of a part of an edge is a contact, whatever was before.
         let options = MotionCastOptions { start_in_contact: StartInContact::Report, ..checked(options)? };
         for (index, waypoint) in waypoints.iter().enumerate() {
             self.check(index, waypoint.as_ref())?;
         }
         workspace.half_spaces.clear();
         workspace.half_spaces.extend(scene.all().half_spaces().map(|(index, half_space)| (index, half_space.plane())));
-        let (mut work, mut open) = (PathWork::default(), None);
-        // Where an observer is to see what proves it, everything is cast.
+        let (mut parts, mut casts, mut open) = (0, 0, None);
+        // If an observer is to see the proof, everything is cast.
         let target = if observer.is_some() { Float::infinity() } else { options.target_distance };
         let last = waypoints.len().checked_sub(1).ok_or(LinkageError::EmptyPath)?;
         for index in 0..last.max(1) {
@@ -106,7 +106,7 @@ impl<S: SupportMap> Linkage<S> {
             let (skeleton, tree, space) = (&self.skeleton, scene.tree(), &mut *workspace);
             let mut sweep = Sweep { skeleton, tree, edge, target, space, end: duration, parts: 0 };
             sweep.run(&mut |near, motion| {
-                work.casts += 1;
+                casts += 1;
                 let options = options.with_max_time(duration);
                 let next = if let Some(base) = self.skeleton.views[near.view].base {
                     let base = Body::Convex(&self.bodies[base][near.other]);
@@ -120,20 +120,20 @@ impl<S: SupportMap> Linkage<S> {
                 first = first_of(first, next);
                 Ok(first.map_or(duration, |first| duration.min(end_of(&first.cast))))
             })?;
-            work.parts += sweep.parts;
+            parts += sweep.parts;
             let found = open.map_or(first, |open| Some(goes_on(open, first)));
             // What rounding leaves open at a waypoint, the next edge may decide.
             let may_go_on = open.is_none() && index + 1 < last && rest > Scalar::ONE;
             if may_go_on && found.is_some_and(|found| is_open_at_end(&found)) {
                 open = found;
             } else if found.is_some() {
-                return Ok(Path { first: found, work });
+                return Ok(Path { first: found, parts, casts });
             }
         }
-        Ok(Path { first: None, work })
+        Ok(Path { first: None, parts, casts })
     }
 
-    /// Casts a body against the bodies that may come near it on an edge; `None` for a miss.
+    /// Casts a body of a link against a body that may come near it on an edge; `None` for a miss.
     fn cast<O: SupportMap<Vector = S::Vector>>(
         &self,
         edge: usize,
@@ -147,7 +147,7 @@ impl<S: SupportMap> Linkage<S> {
         let LinkView { link, base, .. } = self.skeleton.views[view];
         let shape = &self.bodies[link][body];
         let met = base.map_or(Met::Obstacle(other), |link| Met::Link { link, body: other });
-        // A first guess of the normal.
+        // The first guess of the normal leads from the middle of the other body's box to that of this body.
         let center = motion.at(Scalar::ZERO).1.of(self.skeleton.links[link].each[body].center);
         let axis = at.map(|at| center - at);
         let mut cast_to = |end| {
@@ -163,19 +163,19 @@ impl<S: SupportMap> Linkage<S> {
             steps.end(&answer, show);
             Ok::<_, RayCastError>(answer)
         };
-        // The end of a part is none of the edge: where rounding decides whether a contact comes before it, the cast
-        // goes on.
+        // The end of a part is not the end of the edge. If rounding decides whether a contact comes before it, the body
+        // is cast again, as far as the end of the edge.
         let whole = options.max_time - from;
         let mut cast = cast_to(to - from)?;
         if !cast.is_certain() && to - from < whole {
             cast = cast_to(whole)?;
         }
-        // The sum with a start is rounded.
+        // The sum with the start of the part is rounded.
         let room = if from == Scalar::ZERO { from } else { Scalar::EPSILON };
         (cast.lower, cast.upper) = ((from + cast.lower - room).max(from), from + cast.upper + room);
         if let Outcome::Hit(hit) = &mut cast.outcome {
             if let Some(base) = base {
-                // It was seen from the second link.
+                // The contact was found in the frame of the second link.
                 let (_, frame) = motion.edge.place(&self.skeleton.views[base].route, from + hit.time);
                 (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
             }
@@ -185,8 +185,9 @@ impl<S: SupportMap> Linkage<S> {
     }
 }
 
-/// The first of two contacts on an edge, certain or possible. The least bounds of both bracket it. It names the body
-/// whose contact is certain first, which is the one met at the upper bound.
+/// The first of two contacts on an edge, each of which may be certain or only possible. Its bracket goes from the
+/// lesser of the lower bounds to the lesser of the upper ones. Of two hits it names the one that is certain earlier, by
+/// the upper bound; for a hit that is not certain its time counts.
 fn first_of<V: Vector>(known: Option<PathContact<V>>, next: Option<PathContact<V>>) -> Option<PathContact<V>> {
     let (Some(known), Some(next)) = (known, next) else { return known.or(next) };
     let (a, b) = (known.cast, next.cast);
@@ -203,13 +204,14 @@ fn first_of<V: Vector>(known: Option<PathContact<V>>, next: Option<PathContact<V
     Some(PathContact { cast: MotionCast { lower, upper, ..earlier.cast }, ..earlier })
 }
 
-/// The time after which no contact is the first: an undecided cast may meet a body at its lower bound already.
+/// The time after which another contact cannot be the first. A cast that is undecided may be in contact from its lower
+/// bound on.
 fn end_of<V: Vector>(cast: &MotionCast<V>) -> V::Scalar {
     if cast.outcome.is_undecided() { cast.lower } else { cast.upper }
 }
 
-/// The contact at the end of an edge, if that is [open](is_open_at_end) and `next` is the first contact on the next
-/// edge: if that edge begins in contact, or comes to a contact at once, the contact is certain, at the waypoint.
+/// What becomes of a contact that is [open at the end](is_open_at_end) of an edge, given the first contact on the next
+/// edge. If that edge begins in contact, or comes to a contact at once, the open one is certain, at the waypoint.
 fn goes_on<V: Vector>(open: PathContact<V>, next: Option<PathContact<V>>) -> PathContact<V> {
     let is_at_once = |cast: &MotionCast<V>| cast.is_certain() && cast.upper < at_waypoint();
     let Some(mut next) = next.filter(|next| is_at_once(&next.cast)) else { return open };
@@ -221,13 +223,13 @@ fn goes_on<V: Vector>(open: PathContact<V>, next: Option<PathContact<V>>) -> Pat
     next
 }
 
-/// How near the waypoint the end of an edge, or the beginning of the next, has to be. The time of a contact that is
-/// approached from the side is known only to the root of the error of a distance.
+/// How near to the waypoint, in time, both contacts have to be. The time of a contact that bodies come to sideways is
+/// known only as well as the square root of the error of a distance.
 fn at_waypoint<S: Scalar>() -> S {
     S::EPSILON.sqrt() * S::from_f64(16.0)
 }
 
-/// Whether there may be a contact at the end of an edge, and none before it.
+/// Whether rounding leaves open whether there is a contact at the end of an edge, before which there is none.
 fn is_open_at_end<V: Vector>(PathContact { cast, .. }: &PathContact<V>) -> bool {
     !cast.is_certain() && V::Scalar::ONE - cast.lower < at_waypoint()
 }

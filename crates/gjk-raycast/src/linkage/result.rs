@@ -12,8 +12,10 @@ pub struct Path<V: Vector> {
     /// The first contact, or a possible one if its cast is undecided: rounding decides, or a limit was reached. `None`
     /// if no body comes as near as the target distance at any time of the whole path. This is a proof.
     pub first: Option<PathContact<V>>,
-    /// The work done.
-    pub work: PathWork,
+    /// The number of parts of edges at whose middle the joints were placed, to find near bodies.
+    pub parts: usize,
+    /// The number of [motion casts](crate::motion_cast()) of a body of a link against another.
+    pub casts: usize,
 }
 
 /// A contact of a body of a link, or a possible one.
@@ -46,15 +48,6 @@ pub enum Met {
         /// The index of its body.
         body: usize,
     },
-}
-
-/// The work done for an answer. It may be ignored.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PathWork {
-    /// The parts of edges at whose middle the joints were placed, to find near bodies.
-    pub parts: usize,
-    /// The [motion casts](crate::motion_cast()) of a body of a link against another.
-    pub casts: usize,
 }
 
 impl<V: Vector> Path<V> {
@@ -109,8 +102,9 @@ pub struct FreeBox<'b, V: Vector> {
     pub normal: V,
 }
 
-/// The intervals that a cast has proved so far. Each time to which its lower bound has come ends an interval from the
-/// one before. The last end and the last time examined are kept, with their normals.
+/// The intervals that a cast has proved so far. Whenever the lower bound of the cast reaches the time that was examined
+/// last, an interval ends there, which began where the one before ended. The last end and the time examined last are
+/// kept, each with its normal.
 pub(super) struct ProvedSteps<V: Vector> {
     last: Option<(V::Scalar, V)>,
     seen: Option<(V::Scalar, V)>,
@@ -132,7 +126,7 @@ impl<V: Vector> ProvedSteps<V> {
         self.last = Some(there);
     }
 
-    /// The interval that the answer adds: a miss, along one plane, from the last time on.
+    /// Shows the interval that the answer adds, if it is a miss: one plane proves the rest of the time.
     pub(super) fn end(mut self, cast: &MotionCast<V>, mut show: impl FnMut([V::Scalar; 2], [V; 2])) {
         self.come_to(cast.lower, &mut show);
         let from = self.last.map_or(V::Scalar::ZERO, |(time, _)| time);

@@ -1,10 +1,10 @@
 //! Which bodies may come near one another along an edge, and when.
 //!
-//! The edge is halved again and again. At the middle of each part the joints are placed once, for all links that the
-//! world sees. A ball around a link has moved from there by no more than its velocity `v` and its acceleration `a`
-//! there tell, and a bound on how fast that changes: by `v·h + a·h²/2 + j·h³/6` within the time `h`. If nothing is
-//! within that reach, the link is free for the whole part; else, once the reach is not much more than the ball itself,
-//! its bodies and what is near them are left to be cast.
+//! The edge is halved again and again. In the middle of each part the joints are placed once, for all links as the
+//! world sees them. Let a ball around a link have the velocity `v` and the acceleration `a` there, and let `j` bound
+//! its jerk. Then the ball goes no farther within the time `h` than `v·h + a·h²/2 + j·h³/6`. If nothing is within that
+//! distance of the ball, the link is free for the whole part. If something is, the part is halved, as long as the
+//! distance is large beside the ball. After that, each body of the link is listed with what is near it, to be cast.
 
 use alloc::vec::Vec;
 use core::ops::{ControlFlow, Range};
@@ -20,14 +20,15 @@ use crate::RayCastError;
 use crate::half_space::Plane;
 use crate::motion::Bounds;
 
-/// A ball that moves by more than this part of its radius is looked at in a shorter time.
+/// If a ball moves by more than this part of its radius, the part of the edge is halved.
 const COARSE: f64 = 0.5;
 /// How often an edge is halved at most.
 const MAX_DEPTH: u32 = 9;
-/// Once it is halved so often, what is near is cast before the next part is looked at, which may be in vain.
+/// Once the edge is halved this often, what is near is cast before the next part is looked at, since the cast may find
+/// a contact that ends the search.
 const CAST_DEPTH: u32 = 2;
 
-/// Two bodies that may come near one another within a part of an edge.
+/// Two bodies that may come near one another in a part of an edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Near<S> {
     pub(super) from: S,
@@ -45,15 +46,15 @@ pub(super) struct Near<S> {
 #[derive(Clone, Debug, Default)]
 pub struct PathWorkspace<V: Vector> {
     pub(super) half_spaces: Vec<(usize, Plane<V>)>,
-    /// How fast and unevenly the link of each view may move along the edge.
+    /// Bounds on the speed, acceleration and jerk of the link of each view along the edge.
     bounds: Vec<Bounds<V::Scalar>>,
-    /// How the joints move at the middle of a part, as the world sees it.
+    /// How each joint moves in the middle of a part, as the world sees it.
     moving: Vec<Moving<V>>,
-    /// The views that are not known to be free in the parts that are being looked at.
+    /// The views that are not known to be free, for each of the nested parts that are being looked at.
     views: Vec<usize>,
-    /// What is near a link.
+    /// The indices of the bodies that are near a link.
     found: Vec<usize>,
-    /// What has been found and not yet shown.
+    /// What has been found to be near, and not yet been shown.
     near: Vec<Near<V::Scalar>>,
 }
 
@@ -65,34 +66,35 @@ impl<V: Vector> PathWorkspace<V> {
     }
 }
 
-/// A look for what is near along an edge.
+/// The search for what comes near along an edge.
 pub(super) struct Sweep<'s, V: Vector> {
     pub(super) skeleton: &'s Skeleton<V>,
     pub(super) tree: &'s Bvh<V>,
     pub(super) edge: PathEdge<'s, V::Scalar>,
-    /// How near is too near; infinite where everything is to be shown.
+    /// The distance within which bodies count as near; infinite if all of them are to be shown.
     pub(super) target: V::Scalar,
     pub(super) space: &'s mut PathWorkspace<V>,
-    /// The time from which on nothing matters.
+    /// The time after which no contact can be the first.
     pub(super) end: V::Scalar,
-    /// The parts that were looked at.
+    /// The number of parts that were looked at.
     pub(super) parts: usize,
 }
 
-/// Everything that a ball touches in a part of an edge.
+/// The region that a ball of a link stays in during a part of an edge: the intersection of a ball and a box.
 struct SweptBall<V: Vector> {
-    /// Where its centre is in the middle of the part.
+    /// The centre of both: where the centre of the link's ball is in the middle of the part.
     center: V,
-    /// How far it goes from there, along each axis and in any direction.
+    /// Half the size of the box along each axis, and the radius of the ball.
     along: V,
     radius: V::Scalar,
-    /// By how much the ball itself is smaller.
+    /// How far the centre of the link's ball may move.
     drift: V::Scalar,
 }
 
 impl<'s, V: Vector> Sweep<'s, V> {
-    /// Shows what may come near until the end, in the order of time but for what is near for long. Who is shown it
-    /// answers with a time from which on nothing matters.
+    /// Calls `show` for each two bodies that may come near one another until the end. They come in the order of the
+    /// times when they begin to be near, within each quarter of the edge. The call returns a time after which no
+    /// contact can be the first, with which the search ends.
     pub(super) fn run(
         &mut self,
         show: &mut impl FnMut(&Near<V::Scalar>, LinkMotion<'s, V>) -> Result<V::Scalar, RayCastError>,
@@ -106,7 +108,7 @@ impl<'s, V: Vector> Sweep<'s, V> {
         self.visit([V::Scalar::ZERO, self.end], 0, 0..views, show)
     }
 
-    /// Looks at a part of the edge for what is not known to be free in all of it.
+    /// Looks at a part of the edge, with the views that are not known to be free throughout it.
     fn visit(
         &mut self,
         times @ [from, to]: [V::Scalar; 2],
@@ -138,7 +140,7 @@ impl<'s, V: Vector> Sweep<'s, V> {
         if depth <= CAST_DEPTH {
             join(&mut self.space.near);
             for near in self.space.near.drain(..) {
-                // A contact found before bounds those after it.
+                // A contact that was found earlier may have moved the end before it.
                 if near.from <= self.end {
                     let cut = Near { to: near.to.min(self.end), ..near };
                     let (route, bounds) = (&self.skeleton.views[near.view].route, self.space.bounds[near.view]);
@@ -158,8 +160,8 @@ impl<'s, V: Vector> Sweep<'s, V> {
         }
     }
 
-    /// Looks for what is near a link, body by body. If something is, and the link moves too far, the part is to be
-    /// halved instead.
+    /// Lists what is near a link in a part of the edge, body by body. If something is near, but the link moves so far
+    /// that the part is to be halved, it lists nothing and returns `true`.
     fn is_coarse(&mut self, index: usize, [from, to]: [V::Scalar; 2], half: V::Scalar, is_last: bool) -> bool {
         let LinkView { link, base, ref route } = self.skeleton.views[index];
         let (link, base) = (&self.skeleton.links[link], base.map(|base| &self.skeleton.links[base]));
@@ -208,8 +210,8 @@ impl<'s, V: Vector> Sweep<'s, V> {
 }
 
 impl<V: Vector> SweptBall<V> {
-    /// Of a ball in the frame of a link, whose centre is at a distance from the origin of the last joint, and which is
-    /// so placed in the middle of the part.
+    /// The region of a ball in the frame of a link, given how the link moves in the middle of the part, half the
+    /// duration of the part, and the distance of the ball's centre from the origin of the last joint.
     fn of(
         ball: &BoundingSphere<V>,
         distance: V::Scalar,
@@ -225,38 +227,37 @@ impl<V: Vector> SweptBall<V> {
         let way = velocity.abs() * half + acceleration.abs() * (squared * number(0.5)) + V::splat(bent);
         let way = way.min(V::splat(always));
         let drift = way.norm().min(always);
-        // What rounding does to where the ball is, and to derivatives of which these lengths are made.
+        // The error of the ball's place, and of the derivatives that these lengths are made of.
         let lost = (frame.turn_error + epsilons(64.0)) * (always + bent + distance);
         let room = ball.radius + frame.error_of(ball.center.norm()) + lost;
         Self { center, along: (way + V::splat(room)) * above::<V>(), radius: (room + drift) * above::<V>(), drift }
     }
 
-    /// The box around it: one that contains everything where a number is not finite, so that nothing is left out, and
-    /// every cast says so.
+    /// The box. If a number is not finite, it is the largest box, so that nothing is left out and the casts find out.
     fn around(&self) -> Aabb<V> {
         let (min, max) = (self.center - self.along, self.center + self.along);
         let all = V::splat(V::Scalar::max_value());
         if min.is_finite() && max.is_finite() { Aabb { min, max } } else { Aabb { min: -all, max: all } }
     }
 
-    /// Whether it may come as near as the target to a box. NaN may.
+    /// Whether it may come as near to a box as the target distance. If a number is NaN, it may.
     fn meets_box(&self, around: &Aabb<V>, target: V::Scalar) -> bool {
         let gaps = (around.min - self.center).max(self.center - around.max).max(V::ZERO);
         !(gaps.norm() > (self.radius + target) * above::<V>())
     }
 
-    /// The same to the half-space below a plane.
+    /// Whether it may come as near to the half-space below a plane as the target distance.
     fn meets_plane(&self, plane: &Plane<V>, target: V::Scalar) -> bool {
         !(plane.height([self.center], V::Scalar::ZERO, self.radius * above::<V>()).least() > target)
     }
 }
 
-/// A factor that makes up for the rounding of some products and sums.
+/// A factor by which lengths are increased to make up for the rounding of a few products and sums.
 fn above<V: Vector>() -> V::Scalar {
     V::Scalar::ONE + epsilons(32.0)
 }
 
-/// Joins parts that follow one another, and puts what is left in the order of time.
+/// Joins parts that follow one another for the same two bodies, and sorts what is left by time.
 fn join<S: Scalar>(near: &mut Vec<Near<S>>) {
     let key = |near: &Near<S>| (near.view, near.body, near.other);
     let by_time = |a: &Near<S>, b: &Near<S>| a.from.partial_cmp(&b.from).unwrap_or(core::cmp::Ordering::Equal);

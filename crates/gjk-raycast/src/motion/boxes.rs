@@ -1,25 +1,26 @@
-//! A look at two moving boxes, by the facets of their difference.
+//! Two moving boxes at one time, by the facets of their difference.
 //!
-//! The difference of two boxes is `c + Σ tₖ·hₖ·eₖ` with all `|tₖ| ≤ 1`: `eₖ` are unit vectors along the six edges of
-//! both, and `hₖ` half the lengths of these. Each of its facets is spanned by two edges, those of a face of one box or
-//! one of each, and all other edges lead to it from the centre. So along the unit vector `n` across a facet zero is
-//! beyond it by
+//! The difference of two boxes is the set of all `c + Σ tₖ·hₖ·eₖ` with `|tₖ| ≤ 1`, where `eₖ` are the unit vectors
+//! along the six edges of both boxes, and `hₖ` half the lengths of the edges. Each of its facets is spanned by two
+//! edges: those of a face of one box, or one edge of each box. The other four lead from the centre to the facet. So
+//! along the unit vector `n` across the facet, zero is beyond the facet by
 //!
 //! > level(n) = n·c − Σ hₖ·|n·eₖ|,
 //!
-//! which is how far apart the plane keeps the boxes. Of boxes that overlap the highest level of all facets is minus the
-//! depth. Of boxes that are apart it is their distance if zero's foot is within the facet. Otherwise an edge or a
-//! corner of the difference is closest, and the highest level is less, but no less than `1/√3` of the distance: the
-//! vector to the closest point is a sum of normals of facets that meet there, and all of these are in one octant as the
-//! first box sees it.
+//! which is how far apart the plane of the facet keeps the boxes. If the boxes overlap, the highest level of all facets
+//! is minus the depth. If they are apart, and the foot of the perpendicular from zero to the highest facet is within
+//! the facet, the highest level is their distance. Otherwise an edge or a corner of the difference is closest to zero,
+//! and the highest level is less than the distance, but no less than `1/√3` of it. This is because the vector to the
+//! closest point is a sum of the normals of facets that meet there, and all of these are in one octant of the first
+//! box's coordinates.
 //!
-//! The highest facet mostly stays the highest, and as long as it does, its level is as smooth as the motion, also where
-//! the boxes begin to overlap.
+//! The highest facet mostly stays the highest. As long as it does, its level is as smooth as the motion, even where the
+//! boxes begin to overlap.
 //!
-//! Well apart, or deep in one another, the boxes are seen by the highest facet. Nearly in contact, a support point
-//! along its normal tells its level as well as that can be known. Where they overlap by more than the level may be
-//! wrong by, the line through zero along the normal proves it: on one side of zero it goes through the facet, and on
-//! the other side it is within the difference.
+//! If the boxes are well apart, or deep in one another, the level as computed is enough. If they are nearly in contact,
+//! a support point along the facet's normal tells the level as exactly as it can be known. If they overlap by more than
+//! the error of the level, the line through zero along the normal proves it: on one side of zero the line goes through
+//! the facet, and on the other side there is another point of the line in the difference.
 
 use convex_support::{Hint, Scalar, SupportMap as _, Vector};
 use num_traits::Float;
@@ -33,44 +34,45 @@ use crate::gjk::rounding;
 use crate::separation::{Uncertainty, slack};
 use crate::unit::is_moderate;
 
-/// Edges of two boxes.
+/// The number of edges of two boxes that count, three of each.
 const EDGES: usize = 6;
 
-/// The squared sine of the angle between edges whose facet is not looked at. It is a sliver, and what is beyond it is
-/// seen to be beyond others but for the sine times the shorter edge.
+/// The squared sine of the angle between two edges below which their facet is not computed. It is a sliver, and its
+/// level is higher than those of other facets by no more than the sine times the shorter edge.
 const PARALLEL: f64 = 1e-6;
 
-/// Which part of a level may be overlooked.
+/// The part of the highest level that slivers may add to it without being computed.
 const OVERLOOKED: f64 = 0.1;
 
-/// What the unit vector along an edge is wrong by, in ε: three for either rotation, and one for its length.
+/// A bound on the error of the unit vector along an edge, in ε: three for each of two rotations, and one for its
+/// length.
 const TURNED: f64 = 8.0;
 
-/// How far within a facet zero's foot is to be, in units of what points are wrong by.
+/// How far zero's foot has to be within a facet, in units of the error of points.
 const WITHIN: f64 = 64.0;
 
-/// What a product with a unit vector is wrong by, in ε of the magnitudes of its terms.
+/// A bound on the error of a product with a unit vector, in ε times the magnitudes of its terms.
 const PRODUCT: f64 = 3.0;
 
-/// As a part of the way from zero's foot to the sides of a facet, how deep zero may be behind it without being nearer
-/// to another.
+/// How deep zero may be behind a facet that was the highest at the last look, for it to be taken again: this part of
+/// the distance from zero's foot to the sides of the facet. Deeper than that, zero may be nearer to another facet.
 const DEEP: f64 = 0.25;
 
-/// What a level is wrong by, in units of what a bound by a support point loses: it is a sum of six edges, each of which
-/// was turned, where that is of two points.
+/// The error of a level, in units of the error of a bound by a support point. The level is a sum over six edges, each
+/// of which was turned, and the bound is a sum of two points.
 const LEVEL: f64 = 2.0;
 
-/// The same of a level from near, roughly.
+/// The same, roughly, for a level as it is told by a support point.
 const FROM_NEAR: f64 = 0.5;
 
-/// The difference of two boxes where they are at a time.
+/// The difference of two boxes at one time.
 struct Boxes {
-    /// The centre of the second, relative to its body's origin, and the centre of the difference.
+    /// The centre of the second box, relative to the origin of its body, and the centre of the difference.
     from: Vec3,
     center: Vec3,
-    /// Unit vectors along the edges of the first and then of the second, by their coordinates: all first ones, all
-    /// second ones, all third ones. In 2D the third edges are across the plane, and so long that nothing is beyond
-    /// them.
+    /// Unit vectors along the edges of the first box and then of the second: first the x coordinates of all, then the y
+    /// coordinates, then the z coordinates. In 2D the third edge of each box is perpendicular to the plane, and so long
+    /// that the facets at its ends are never the highest.
     units: [[f64; EDGES]; 3],
     halves: [f64; EDGES],
 }
@@ -82,18 +84,19 @@ struct BoxFacet {
     normal: Vec3,
     /// How far zero is beyond it.
     level: f64,
-    /// How far zero's foot is from the sides of the facet; negative if it is not within.
+    /// The distance of zero's foot from the nearest side of the facet; negative if it is outside.
     room: f64,
-    /// The point of the second box, relative to its body's origin, that goes into zero's foot, or if that is not
-    /// within, one that is near.
+    /// The point of the second box, relative to its body's origin, that zero's foot is the difference of; if the foot
+    /// is outside the facet, a point near that.
     point: Vec3,
 }
 
 impl<V: Vector> MovingPair<'_, V> {
-    /// Two boxes at a time, from near if that is asked or they are nearly in contact; `None` where it is not certain
-    /// which facet is the highest, or that proves nothing.
+    /// Two boxes at a time, exactly if that is asked or if they are nearly in contact. `None` if it is not certain
+    /// which facet is the highest, or if that facet proves nothing.
     ///
-    /// All is compiled into one function, so that where the bodies are need not be written to memory and read again.
+    /// All of it is compiled into one function, so that the places of the bodies need not be written to memory and read
+    /// again.
     #[inline(always)]
     pub(super) fn by_boxes(
         &self,
@@ -110,7 +113,8 @@ impl<V: Vector> MovingPair<'_, V> {
             return None;
         }
         let boxes = Boxes::new(blocks, (&placed.a, &placed.b), placed.offset, size.as_f64());
-        // The facet counts as a support point, which it takes the place of, and as two if it is looked for among all.
+        // A facet counts as one support point, since it takes the place of one, and the search among all facets as
+        // another.
         let facet = match self.facet.get().map(|span| boxes.facet(span)) {
             Some(kept) if kept.room > 0.0 && kept.level > -kept.room * DEEP => kept,
             _ => {
@@ -138,8 +142,9 @@ impl<V: Vector> MovingPair<'_, V> {
         Some(Instant { time, normal, gap, distance, upper, error, closing, point, is_close: !is_rough })
     }
 
-    /// The distance as a facet tells it as well as it can be known, what that is wrong by, and what it is certainly not
-    /// more than, if zero's foot is within the facet, and it proves that the boxes are apart or overlap.
+    /// The distance of boxes that are nearly in contact, as exactly as it can be known from a facet; the error of it;
+    /// and an upper bound. `None` unless zero's foot is within the facet, and the facet proves that the boxes are apart
+    /// or that they overlap.
     #[inline(always)]
     fn near_facet(
         &self,
@@ -149,7 +154,7 @@ impl<V: Vector> MovingPair<'_, V> {
         axis: V,
     ) -> Option<[V::Scalar; 3]> {
         let normal = vector::<V>(facet.normal);
-        // Not where they have passed through one another.
+        // If the boxes have passed through one another, the normal is on the other side.
         if !(facet.room > 0.0 && normal.dot(axis) > Scalar::ZERO) {
             return None;
         }
@@ -175,7 +180,7 @@ impl<V: Vector> MovingPair<'_, V> {
 }
 
 impl Boxes {
-    /// The boxes of two bodies, together of the given size, whose origins differ by `offset`.
+    /// The difference of the boxes of two bodies whose origins differ by `offset`, and which together are of this size.
     #[inline(always)]
     fn new<V: Vector>(
         [first, second]: &[Block<V>; 2],
@@ -194,7 +199,7 @@ impl Boxes {
             0..3 => first.halves[k],
             _ => second.halves[k - 3],
         });
-        // Mostly both are zero.
+        // In most cases both centres are zero.
         let (from, center) = if [first.center, second.center] == [V::ZERO; 2] {
             (V::ZERO, offset)
         } else {
@@ -212,12 +217,13 @@ impl Boxes {
         [x[k], y[k], z[k]]
     }
 
-    /// What spans the highest facet; `None` where edges are so nearly parallel that it may be one of theirs.
+    /// The two edges that span the highest facet. `None` if some edges are so nearly parallel that their facet, which
+    /// is not computed, may be the highest.
     #[inline(always)]
     fn highest(&self) -> Option<[usize; 2]> {
         let (u, w) = ([self.unit(0), self.unit(1), self.unit(2)], [self.unit(3), self.unit(4), self.unit(5)]);
         let (h, k) = (&self.halves[..3], &self.halves[3..]);
-        // In coordinates along the edges of the first.
+        // Coordinates along the edges of the first box.
         let r: [Vec3; 3] = core::array::from_fn(|i| core::array::from_fn(|j| dot(u[i], w[j])));
         let m = r.map(|row| row.map(f64::abs));
         let c: Vec3 = core::array::from_fn(|i| dot(u[i], self.center));
@@ -235,8 +241,8 @@ impl Boxes {
                 (highest, span) = (level, [3 + (j + 1) % 3, 3 + (j + 2) % 3]);
             }
         }
-        // An edge of each, whose product is as long as the sine of the angle between them: by squares that keep their
-        // signs.
+        // Facets spanned by an edge of each box. The vector product of two edges is as long as the sine of the angle
+        // between them. Squares with the signs of the levels are compared, so that no root is needed.
         let (mut highest, mut overlooked) = (highest * highest.abs(), 0.0);
         for i in 0..3 {
             let [p, q] = [(i + 1) % 3, (i + 2) % 3];
@@ -256,11 +262,11 @@ impl Boxes {
                 }
             }
         }
-        // NaN has no highest.
+        // If a number is NaN, the comparison fails.
         (overlooked <= highest.abs() * (OVERLOOKED * OVERLOOKED)).then_some(span)
     }
 
-    /// The facet that is spanned by two edges, on the side of zero.
+    /// Of the two facets that two edges span, the one on the side of zero.
     #[inline(always)]
     fn facet(&self, span: [usize; 2]) -> BoxFacet {
         let [i, j] = span;
@@ -275,8 +281,8 @@ impl Boxes {
         let sides: [f64; EDGES] = core::array::from_fn(|k| Float::copysign(halves[k], heights[k]));
         let reach: [f64; EDGES] = core::array::from_fn(|k| heights[k] * sides[k]);
         let level = dot(n, *center) - ((reach[0] + reach[2] + reach[4]) + (reach[1] + reach[3] + reach[5]));
-        // A corner of the facet is the difference of a corner of each box, and zero's foot is so far from there along
-        // both edges.
+        // A corner of the facet is the difference of a corner of each box. From there zero's foot is reached by a way
+        // along each of the two edges.
         let sum = |c: &[f64; EDGES], k: usize| c[k] * sides[k] + c[k + 1] * sides[k + 1] + c[k + 2] * sides[k + 2];
         let (of_first, of_second) = ([sum(x, 0), sum(y, 0), sum(z, 0)], [sum(x, 3), sum(y, 3), sum(z, 3)]);
         let corner: Vec3 = core::array::from_fn(|x| center[x] - (of_first[x] + of_second[x]));
@@ -292,9 +298,10 @@ impl Boxes {
     /// Whether the line through zero along the normal certainly goes through the facet, and on within the difference to
     /// the other side of zero.
     ///
-    /// Zero is `depth` behind the facet, and points of the difference are wrong by `error`, which is less. The other
-    /// edges lead from the facet to the opposite one, `2H` behind it and aside of it by `2R` at most. So `s` behind it
-    /// there is the same parallelogram, aside by `s·R/H` at most. Here `s` is eight times the depth.
+    /// Zero is `depth` behind the facet, which is more than the `error` of the points of the difference. The other four
+    /// edges lead from the facet to the opposite one, which is `2H` behind it and shifted to the side by no more than
+    /// `2R`. So at the distance `s` behind the facet the difference contains the same parallelogram, shifted by no more
+    /// than `s·R/H`. Here `s` is eight times the depth.
     fn is_pierced(&self, facet: &BoxFacet, depth: f64, error: f64) -> bool {
         let [i, j] = facet.span;
         let (mut behind, mut aside) = (0.0, 0.0);
@@ -302,22 +309,24 @@ impl Boxes {
             behind += self.halves[k] * dot(facet.normal, self.unit(k)).abs();
             aside += self.halves[k];
         }
-        // Coordinates along edges are the less well known the smaller the angle between these.
+        // The smaller the angle between two edges, the larger the error of coordinates along them.
         let across = cross(&self.unit(i), &self.unit(j));
         let error = WITHIN * error / Float::sqrt(dot(across, across));
         let s = 8.0 * depth;
         s < behind && (facet.room - error) * behind > s * aside
     }
 
-    /// How much higher than its lowest corner a facet may be along a unit vector near its normal: its edges lean, and
-    /// are wrong by what a turn loses, or by no more than the points of their box.
+    /// The most by which another point of a facet may be higher than its lowest corner, along a unit vector near its
+    /// normal. The two edges may lean against the plane, and each edge has the error of its rotation, which is no more
+    /// than that of the points of its box.
     fn leaning(&self, facet: &BoxFacet, n: Vec3, errors: [f64; 2], epsilon: f64) -> f64 {
         let turned = TURNED * epsilon;
         let mut leaning = 0.0;
         for k in 0..EDGES {
             let (half, unit) = (self.halves[k], self.unit(k));
             let height = dot(n, unit).abs();
-            // Of another that lies in the plane it is not certain which of its ends is the lower one.
+            // For another edge that is nearly parallel to the plane it is not certain which of its ends is the lower
+            // one.
             if facet.span.contains(&k) || height < turned * 4.0 {
                 let magnitude = dot(n.map(f64::abs), unit.map(f64::abs));
                 let wrong = (turned * half).min(2.0 * errors[k / 3]);

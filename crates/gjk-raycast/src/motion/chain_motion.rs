@@ -53,13 +53,14 @@ impl<'j, V: Vector> ChainMotion<'j, V> {
         Self { joints }
     }
 
-    /// Bounds for all points of a ball, by its radius, until `end`. A joint is as far from the next one's centre as at
-    /// time 0, and what that may have moved until `end`.
+    /// Bounds until the time `end` for points of a ball, as functions of their distance from its centre. The distance
+    /// from a joint to the centre of the next one is the distance at time 0, plus what a joint may have slid until
+    /// `end`.
     fn bounds(&self, ball: BoundingSphere<V>, end: V::Scalar) -> Bounds<V::Scalar> {
         let (mut bounds, mut near) = (Bounds::REST, ball.center);
         for joint in self.joints.iter().rev() {
             let (v, w) = (joint.velocity.norm(), axial::vector::<V>(joint.angular_velocity).norm());
-            // A joint that does not turn has no centre.
+            // For a joint that does not turn the centre means nothing.
             if w > V::Scalar::ZERO {
                 bounds.lengthen((near - joint.center).norm());
                 near = joint.center;
@@ -82,8 +83,9 @@ impl<V: Vector> Trajectory for ChainMotion<'_, V> {
             if whole.turn_error == V::Scalar::ZERO {
                 whole.pivot = next.pivot;
             }
-            // x ↦ p + s + (1 + T)(x − p) comes to p + s + s' + T'(p + s − p') + (1 + T')(1 + T)(x − p).
-            // The pivots first, so that no more is lost far from the world's origin than near it.
+            // The next joint takes p + s + (1 + T)(x − p) to p + s + s' + T'(p + s − p') + (1 + T')(1 + T)(x − p). The
+            // difference of the pivots is taken first, so that no more digits are lost far from the world's origin than
+            // near it.
             let arm = whole.pivot - next.pivot + whole.shift;
             let turned = next.turn * arm;
             let units = V::Scalar::EPSILON * V::Scalar::from_f64(4.0);
@@ -128,8 +130,8 @@ pub(crate) struct Linear<S> {
     per_length: S,
 }
 
-/// Bounds on the first three derivatives, by time, of the place of a point along an edge, on which all joint values
-/// change at constant rates.
+/// Bounds on the first three derivatives, by time, of the position of a point, where all joint values change at
+/// constant rates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds<S> {
     pub(crate) speed: Linear<S>,
@@ -137,7 +139,7 @@ pub(crate) struct Bounds<S> {
     pub(crate) jerk: Linear<S>,
     /// The sum of the rates of the joints that turn: no angular velocity is larger.
     pub(crate) spin: S,
-    /// How far a point may be from the origin of the joint that was taken last.
+    /// How far a point may be from the origin of the joint that was added last.
     reach: Linear<S>,
 }
 
@@ -156,14 +158,15 @@ impl<S: Scalar> Linear<S> {
     }
 }
 
-/// Joints are taken from the last one on. Let `y` be a point as those so far have moved it, with the bounds `s`, `a`
-/// and `j`. A joint that turns at the rate `w` takes it to `R(wt)·y`, and the derivatives of a product are
+/// Joints are added from the last one to the first. Let `y` be a point as the joints so far have moved it, with the
+/// bounds `s`, `a` and `j` on its speed, acceleration and jerk. A joint that turns at the rate `w` takes it to
+/// `R(wt)·y`, and the derivatives of this product are bounded by
 ///
 /// > s′ = w·l + s,   a′ = w²·l + 2w·s + a,   j′ = w³·l + 3w²·s + 3w·a + j,
 ///
 /// where `l` is the distance of `y` from the axis. A joint that slides adds its rate to `s` alone.
 impl<S: Scalar> Bounds<S> {
-    /// Of points that no joint moves.
+    /// The bounds for points that no joint moves.
     pub(crate) const REST: Self = Self {
         speed: Linear::ZERO,
         acceleration: Linear::ZERO,
@@ -180,12 +183,12 @@ impl<S: Scalar> Bounds<S> {
         S::from_f64(2.0) * rate * self.speed.of(r) + from.norm().max(to.norm()) * self.acceleration.of(r)
     }
 
-    /// With the way from the origin of another joint to where it was measured from.
+    /// Adds the distance from the origin of the next joint to the origin from which distances were measured so far.
     pub(crate) fn lengthen(&mut self, arm: S) {
         self.reach.at_origin += arm;
     }
 
-    /// With a joint that turns, from whose axis the one before is as far as this.
+    /// Adds a joint that turns at the rate `w`, and from whose axis the joint that was added before is `across` away.
     pub(crate) fn turn(&mut self, w: S, across: S) {
         let (two, three) = (S::from_f64(2.0), S::from_f64(3.0));
         let lever = Linear { at_origin: self.reach.at_origin + across, ..self.reach };
@@ -195,7 +198,7 @@ impl<S: Scalar> Bounds<S> {
         self.spin += w;
     }
 
-    /// With one that slides, by no more than `way`.
+    /// Adds a joint that slides, by no more than `way`.
     pub(crate) fn slide(&mut self, rate: S, way: S) {
         self.speed.at_origin += rate;
         self.lengthen(way);

@@ -1,9 +1,9 @@
 //! The search for the first contact of two moving bodies.
 //!
-//! What is proved are free intervals, one after the other from time 0 on ([`free_interval`](super::free_interval)); how
-//! their ends are chosen decides only how many there are. Far from contact an end is put as far away as can be expected
-//! to be proved. Where the bodies close in fast enough for their contact to be within reach, it is put there, by
-//! Newton's method on the distance.
+//! The search proves free intervals, one after the other from time 0 on ([`free_interval`](super::free_interval)). How
+//! it chooses their ends decides only how many there are. Far from contact the end is put as far away as can be
+//! expected to be proved. If the bodies close in so fast that a contact can be expected before that, the end is put
+//! there, by Newton's method on the distance.
 
 use convex_support::numerics::range::is_comfortable;
 use convex_support::{Scalar, Vector};
@@ -14,53 +14,57 @@ use super::instant::{Approach, Base, Instant, Limits, NEAR, Stage};
 use super::trajectory::TurningPlane;
 use crate::{Impact, Miss, MotionCast, MotionCastOptions, MotionIterate, Outcome, StartInContact, Status};
 
-/// Where to be when a contact is as near as can be told: its distance in units of what that may be wrong by.
+/// The distance at which the search for a contact aims, in units of the error of the distance. It is on the near side
+/// of the contact, and hardly nearer than can be told from it.
 pub(super) const AIM: f64 = 1.5;
-/// How often in a row the search for a contact may come nearer by less than half before it halves the interval.
+/// How often in a row neither the interval nor the distance may have been halved before the search halves the interval
+/// itself.
 pub(super) const PATIENCE: u8 = 2;
 
-/// How much deeper than touching an overlap is looked for, in units of what the distance may be wrong by.
+/// How deep an overlap is looked for, in units of the error of the distance.
 const DEPTH: f64 = 2.0;
 
-/// How far apart again bodies are looked at after a graze, in units of how near to contact they were brought: that they
-/// have passed through one another takes some errors to show.
+/// After a graze the search goes on until the bodies are apart again by this many times the distance at which it
+/// stopped before the graze: only then can it be seen whether they have passed through one another.
 const GRAZE: f64 = 16.0;
 
-/// The square of an angle, in radians, that is too far for a normal to have turned for a step to be like the one
-/// before.
+/// If the normal has turned in a step by more than the root of this, in radians, the next step is not expected to be
+/// like it.
 const FAR: f64 = 0.25;
 
-/// The search, which has come to [`near`](Self::near).
+/// The state of the search. Up to the time of [`near`](Self::near) the bodies are proved to be apart.
 pub(super) struct Search<'p, V: Vector> {
     pub(super) bodies: &'p dyn Approach<V>,
     pub(super) options: MotionCastOptions<V>,
     observer: &'p mut dyn FnMut(MotionIterate<V>),
-    /// From where the distances of all instants are measured.
+    /// The level from which the distances of all instants are measured.
     pub(super) base: Base<V::Scalar>,
-    /// The last time up to which the bodies are proved apart.
+    /// The last time up to which the bodies are proved to be apart.
     pub(super) near: Instant<V>,
-    /// The one before it, from which the last step came; at the start, the same one a unit of time before.
+    /// The instant before it, from which the last step came. At the start it is the same instant, a unit of time
+    /// earlier.
     pub(super) before: Instant<V>,
-    /// The bound `M` to be expected of a step like it; at the start, along a plane that does not turn.
+    /// The bound `M` that is to be expected in the next step: that of the last step. At the start it is the bound along
+    /// a plane that does not turn.
     pub(super) acceleration: V::Scalar,
-    /// A later time at which they are apart, though they may not be in between.
+    /// A later time at which they are apart. It is not proved that they are so in between.
     pub(super) ahead: Option<Instant<V>>,
     /// The earliest time known at which they are not certainly apart.
     pub(super) beyond: Option<Instant<V>>,
-    /// The one that was the earliest before.
+    /// The instant that was the earliest of these before.
     pub(super) farther: Option<Instant<V>>,
     /// The earliest time known at which they overlap.
     pub(super) upper: V::Scalar,
-    /// How far apart the two ends of the search for a contact were, and how far the bodies were from touching at the
-    /// nearer of them; and how often in a row neither was halved.
+    /// The length of the interval in which a contact is looked for, the distance from contact at the end that is nearer
+    /// to it, and how often in a row neither was halved.
     width: V::Scalar,
     way: V::Scalar,
     pub(super) slow: u8,
     pub(super) looks: usize,
 }
 
-/// Whether sums and products of a few lengths as large as this neither overflow nor lose digits as they are subnormal.
-/// Of others the search proves nothing.
+/// Whether sums and products of a few lengths as large as this neither overflow nor are subnormal. About other lengths
+/// the search proves nothing.
 fn is_in_range<S: Scalar>(measure: S) -> bool {
     is_comfortable(measure) && (measure * S::from_f64(65536.0)).is_finite()
 }
@@ -85,7 +89,7 @@ impl<'p, V: Vector> Search<'p, V> {
             return MotionCast { outcome, lower, upper: infinity, status: Status::Converged, iterations: 0 };
         }
         let axis = options.axis.unwrap_or_else(|| bodies.between()).unit().unwrap_or_else(|| Vector::axis(0));
-        // Which way out is the shortest matters only to bodies that are to leave one another.
+        // The depth matters only if bodies that begin in contact are to leave one another.
         let leaves = options.start_in_contact == StartInContact::IfDeeper;
         let limits = Limits { distance: infinity, depth: if leaves { infinity } else { zero } };
         let near = bodies.at(zero, axis, limits, false);
@@ -125,7 +129,7 @@ impl<'p, V: Vector> Search<'p, V> {
         search.answer(end)
     }
 
-    /// From a time at which the bodies are apart to the end of the motion or to contact.
+    /// Goes on from a time at which the bodies are apart to the end of the motion, or to a contact.
     pub(super) fn advance(&mut self) -> MotionEnd<V> {
         let zero = V::Scalar::ZERO;
         while self.looks < self.options.max_iterations {
@@ -162,17 +166,17 @@ impl<'p, V: Vector> Search<'p, V> {
         MotionEnd::Undecided(Status::IterationLimit)
     }
 
-    /// Where the contact is as near as can be told: looks for a time just after it at which the bodies overlap. `None`
-    /// where they are proved apart there, and the search goes on.
+    /// Once the bodies are as near to contact as can be told, looks for a time just after it at which they overlap.
+    /// `None` if they are proved to be apart there, so that the search goes on.
     pub(super) fn close_in(&mut self) -> Option<MotionEnd<V>> {
         let (zero, two) = (V::Scalar::ZERO, V::Scalar::from_f64(2.0));
         let end = self.options.max_time.min(self.upper);
         let Instant { time, distance, upper, error, closing, .. } = self.near;
-        // Of what seems to overlap the distance is its own lower bound, and the other one tells how well it is known.
+        // If the bodies seem to overlap, the distance is its own lower bound, and the upper bound tells its error.
         let error = if distance > zero { error } else { (upper - distance).max(self.bodies.size() * Scalar::EPSILON) };
         let error = error.max(self.closest() * Scalar::from_f64(0.25));
         let deep = distance.max(zero) + error * Scalar::from_f64(DEPTH);
-        // As fast as it closes, or after the time that it would take to come so deep from rest.
+        // The time that it takes to come so deep at the present speed, or from rest.
         let (at_speed, from_rest) = (deep / closing, (two * deep / self.acceleration.max(zero)).sqrt());
         let mut step = if closing > zero && at_speed < from_rest { at_speed } else { from_rest };
         while self.looks < self.options.max_iterations {
@@ -197,7 +201,7 @@ impl<'p, V: Vector> Search<'p, V> {
                     self.upper = there.time;
                     return Some(MotionEnd::Contact);
                 }
-                // They are apart again after a graze that nobody can tell from a contact.
+                // They are apart again, after a graze that cannot be told from a contact.
                 if there.gap > self.closest() * V::Scalar::from_f64(GRAZE) && there.closing <= zero {
                     return Some(MotionEnd::Undecided(Status::Stalled));
                 }
@@ -212,8 +216,8 @@ impl<'p, V: Vector> Search<'p, V> {
         Some(MotionEnd::Undecided(Status::IterationLimit))
     }
 
-    /// Goes on to a time at which the bodies are apart, if they are proved to be so until then; if not, that is
-    /// remembered.
+    /// Goes on to a time at which the bodies are apart, if it is proved that they are so until then. If it is not, the
+    /// time is remembered.
     pub(super) fn advance_to(&mut self, there: &Instant<V>) -> bool {
         let Some(acceleration) =
             acceleration_if_free(self.bodies, &self.near, there, &self.base).filter(|_| self.stay_in_contact(there))
@@ -223,7 +227,7 @@ impl<'p, V: Vector> Search<'p, V> {
         };
         (self.before, self.near) = (self.near, *there);
         self.acceleration = acceleration;
-        // A normal that has turned far makes the next step less like the last one.
+        // If the normal has turned far, the next step will be less like the last one.
         let turned = self.turned();
         if turned.length_squared() > Scalar::from_f64(FAR) {
             let plane = TurningPlane { from: there.normal, to: there.normal + turned };
@@ -245,14 +249,14 @@ impl<'p, V: Vector> Search<'p, V> {
         }
     }
 
-    /// How near to contact the bodies are to be brought before it is bracketed.
+    /// The distance at which the bodies are near enough to contact for it to be bracketed.
     pub(super) fn closest(&self) -> V::Scalar {
         let from_f64 = V::Scalar::from_f64;
         let size = self.bodies.size() * self.options.tolerance * from_f64(0.25);
         (self.near.error * from_f64(2.0 * AIM)).max(size)
     }
 
-    /// Counts how often in a row the search for a contact has not come nearer by half.
+    /// Counts how often in a row the search for a contact has halved neither the interval nor the distance.
     fn watch_progress(&mut self) {
         if let Some(beyond) = self.beyond {
             let half = V::Scalar::from_f64(0.5);
@@ -263,8 +267,9 @@ impl<'p, V: Vector> Search<'p, V> {
         }
     }
 
-    /// The bodies at a time; closely where they can be expected to be nearly in contact, since Newton's method squares
-    /// their distance, and if the search does not come nearer to a contact, which from afar may only seem to be one.
+    /// The bodies at a time: exactly if they can be expected to be nearly in contact there, since Newton's method
+    /// squares their distance, and roughly otherwise. If the search makes no progress towards a contact, they are
+    /// looked at exactly too, since a rough distance may only make it seem that there is one.
     fn glance(&mut self, time: V::Scalar) -> Instant<V> {
         let limits = Limits { distance: self.enough_at(time), depth: Scalar::ZERO };
         let Instant { distance, error, .. } = self.near;
@@ -279,23 +284,23 @@ impl<'p, V: Vector> Search<'p, V> {
         there
     }
 
-    /// How long the last step was.
+    /// The duration of the last step.
     pub(super) fn step(&self) -> V::Scalar {
         self.near.time - self.before.time
     }
 
-    /// What the normal has changed in it.
+    /// The change of the normal in the last step.
     fn turned(&self) -> V {
         self.near.normal - self.before.normal
     }
 
-    /// The unit normal at a time, if it turns on as it did in the last step, but no farther.
+    /// The unit normal at a time, if it goes on turning as it did in the last step, but no farther than it turned then.
     pub(super) fn expected_normal(&self, time: V::Scalar) -> V {
         let part = ((time - self.near.time) / self.step()).min(Scalar::ONE);
         (self.near.normal + self.turned() * part).unit().unwrap_or(self.near.normal)
     }
 
-    /// The bodies at a time as well as it can be known, which the observer is shown.
+    /// The bodies at a time, as exactly as they can be known, which is shown to the observer.
     pub(super) fn look(&mut self, time: V::Scalar, mut limits: Limits<V::Scalar>) -> Instant<V> {
         let axis = self.expected_normal(time);
         if self.base.stage != Stage::Apart {
@@ -346,7 +351,7 @@ impl<'p, V: Vector> Search<'p, V> {
     }
 }
 
-/// The next larger number of a time, or a little more.
+/// The next larger number after a time, or one a little larger.
 fn next_after<S: Scalar>(time: S) -> S {
     (time + time.abs() * S::EPSILON).max(time + S::min_positive_value())
 }

@@ -15,30 +15,32 @@
 //!
 //! > √g₀ + √g₁ > s·√(M/2),
 //!
-//! since its least value over `σ` is zero where both sides are equal. That is the whole certificate: two planes and a
+//! since its least value over `σ` is zero if both sides are equal. That is the whole certificate: two planes, and a
 //! bound on how unevenly the bodies move. Nothing is lost at the ends, so that an interval that ends within rounding of
-//! a contact is proved as easily as any other, where steps that trust a speed come to a transversal contact by ever
-//! smaller steps; and bodies that do not turn have `M = 0` along a plane that does not, which proves any interval.
+//! a contact is proved as easily as any other. (Steps that rely on a bound on speed come to a contact only by ever
+//! smaller steps.) For bodies that do not turn, along a plane that does not turn, `M` is zero, which proves any
+//! interval.
 //!
-//! That the bodies come no deeper into one another than to a signed distance `ℓ < 0` is proved alike, with gaps
-//! measured from that level: at the ends `φ ≥ ρ + ℓ + g`, and in between it is to be at least `(ρ + ℓ)·|n(t)|`. Where
-//! `ρ + ℓ` is negative the normal's being shorter than one counts against the proof. Since `|n(t)|² = 1 − σ·(1 − σ)·|n₁
-//! − n₀|²`, it is shorter by `σ·(1 − σ)·|n₁ − n₀|²` at most, as if `M` were larger by `2·|ℓ|·|r|²`.
+//! In the same way it is proved that the signed distance of the bodies stays above a level `ℓ < 0`, with gaps that are
+//! measured from that level: at the ends `φ ≥ ρ + ℓ + g`, and in between `φ` has to be at least `(ρ + ℓ)·|n(t)|`. If
+//! `ρ + ℓ` is negative, that is harder to reach as the normal is shorter than one. Since
+//! `|n(t)|² = 1 − σ·(1 − σ)·|n₁ − n₀|²`, it is shorter by no more than `σ·(1 − σ)·|n₁ − n₀|²`, as if `M` were larger by
+//! `2·|ℓ|·|r|²`.
 //!
-//! Any two planes will do that separate the bodies at the two times. Where the normals of the closest points turn far,
-//! so that `M` is large, one of them may do at both times.
+//! Any two planes that separate the bodies at the two times may be used. If the normals of the closest points turn far,
+//! so that `M` is large, one of them may serve at both times.
 
 use convex_support::{Scalar, Vector};
 
 use super::instant::{Approach, Base, Instant};
 use super::trajectory::TurningPlane;
 
-/// What may be lost to rounding where both sides of the condition are computed.
+/// A bound on what rounding changes of both sides of the condition, in ε.
 const ROUNDING: f64 = 64.0;
 
-/// Whether the bodies are certainly above a level throughout the interval between two times at which they are, by gaps
-/// that are measured from it: at level 0, whether they are apart. If so, the bound `M` along the plane that turns from
-/// the one normal to the other, whichever plane proves it.
+/// Whether the signed distance of the bodies certainly stays above a level between two times at which it does so by the
+/// given gaps. At level 0 this means that they are apart. If so, the answer is the bound `M` along the plane that turns
+/// from the one normal to the other, whichever plane is the proof.
 pub(super) fn acceleration_if_free<V: Vector>(
     bodies: &dyn Approach<V>,
     from: &Instant<V>,
@@ -56,7 +58,7 @@ pub(super) fn acceleration_if_free<V: Vector>(
     if keeps_apart([from.gap, to.gap], bent, times) {
         return Some(turning);
     }
-    // Of one plane nothing else can be said.
+    // If the two planes are one, there is no other to try.
     if from.normal == to.normal {
         return None;
     }
@@ -69,18 +71,19 @@ pub(super) fn acceleration_if_free<V: Vector>(
     is_free.then_some(turning)
 }
 
-/// Whether planes that separate the bodies by these gaps at the ends of an interval do so in between, with this bound.
+/// Whether planes that separate the bodies by these gaps at the ends of an interval separate them in between too, given
+/// the bound `M`.
 fn keeps_apart<S: Scalar>(gaps: [S; 2], most: S, times: [S; 2]) -> bool {
     if !gaps.iter().all(|&gap| gap > S::ZERO) {
         return false;
     }
     let duration = times[1] - times[0];
     let [less, more] = if gaps[0] < gaps[1] { gaps } else { [gaps[1], gaps[0]] };
-    // The square of the sum of the roots. A root is taken of numbers without a unit only: that of a length would have
-    // other digits in another unit, since the root of an odd power of two is no power of two.
+    // The square of the sum of the roots. Roots are taken only of ratios: the root of a length would have other digits
+    // in another unit, since the root of an odd power of two is no power of two.
     let squared = less + more + S::from_f64(2.0) * more * (less / more).sqrt();
     let half = S::from_f64(0.5 + 0.5 * ROUNDING * S::EPSILON.as_f64());
-    // NaN is no proof.
+    // If a number is NaN, there is no proof.
     duration * duration * most * half < squared
 }
 

@@ -1,16 +1,16 @@
-//! Searches that begin in contact, and ask when the bodies get deeper than they began, or touch again.
+//! Searches for bodies that begin in contact: when do they get deeper than they began, or touch again?
 //!
-//! They are the same search with distances measured from another [level](Base::level), since a [free
-//! interval](super::free_interval) proves as well that the bodies come no deeper than to a level as that they stay
-//! apart. At first the level is a slack below where they began, as they are then above it by that. It rises when they
-//! are proved to be higher: to where they began, so that when they are there again is known as well as any contact, and
-//! to 0 when they are apart.
+//! This is the same search, with distances measured from another [level](Base::level), since a [free
+//! interval](super::free_interval) proves that the signed distance stays above a level just as it proves that the
+//! bodies stay apart. At first the level is a slack below the signed distance at the start, so that the bodies begin
+//! above it. When they are proved to be less deep than that, the level rises to the signed distance at the start. The
+//! time when they come back there is then known as well as any contact. When they are apart, the level rises to 0.
 //!
 //! Bodies that overlap at two times may have been apart in between, and have met again. So while they overlap by more
-//! than the slack, an interval is taken only if they are proved to [stay in contact](super::in_contact) in it. The ends
-//! of such intervals come to where the bodies part as near as rounding lets them. There, and where they only touch at
-//! the start, a level just below contact does as well: bodies that part and meet again come below it, unless they meet
-//! by no more than the slack.
+//! than the slack, the search goes on over an interval only if they are proved to [stay in contact](super::in_contact)
+//! in it. The ends of such intervals come as near to the time when the bodies part as rounding allows. From there on,
+//! and if the bodies only touch at the start, the level is just below contact: bodies that part and meet again come
+//! below it, unless they overlap by no more than the slack.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -19,36 +19,37 @@ use super::first_contact::{MotionEnd, Search};
 use super::instant::{Base, Instant, ROUNDED, Stage};
 use crate::Status;
 
-/// How much deeper than they began counts as deeper: so many ε of the bodies' sizes, and [so many times](ROUNDED)
-/// what their places are rounded by at the time.
+/// By how much the bodies have to be deeper than they began, in ε of their sizes. The rounding of their places at the
+/// time is added, [`ROUNDED`] times.
 const SLACK: f64 = 16.0;
 
-/// Bodies that sink by a power of time no higher than this have sunk from the start on, as far as can be told.
+/// If the bodies have sunk by a power of time that is no higher than this, they are taken to have sunk from the start
+/// on.
 const POWER: f64 = 4.0;
 
-/// After how many looks at bodies as deep as they began it is foreseen how many are to come.
+/// If bodies are still as deep as they began after this many looks, the number of looks to come is estimated.
 const LONG: usize = 500;
 
-/// How deep bodies are, in units of the slack, that are known to overlap a moment later too, where their places are
-/// rounded by more.
+/// Bodies that are deeper than this at the start, in units of the slack, are known to overlap a moment later too, when
+/// their places are rounded by more.
 const DEEP: f64 = 4.0;
 
-/// How much of the way out of an overlap is asked for at once.
+/// The part of the time until the bodies part that the next interval may take.
 const OUT: f64 = 0.9;
 
 impl<V: Vector> Search<'_, V> {
-    /// What to answer where the bodies are not certainly apart at the start.
+    /// The answer if the bodies are not certainly apart at the start, and a contact at the start counts.
     pub(super) fn start_in_contact(&mut self) -> MotionEnd<V> {
         let zero = V::Scalar::ZERO;
         if self.near.overlaps() {
             self.upper = zero;
         }
         if !self.near.overlaps() && !(self.near.distance <= self.near.error) {
-            // Neither is known, such as of a support map that returns NaN.
+            // Neither contact nor distance is known, as with a support map that returns NaN.
             return MotionEnd::Undecided(Status::Stalled);
         }
         if !self.near.overlaps() && self.near.closing > zero {
-            // They touch to rounding: when do they overlap?
+            // They touch to rounding. The bracket ends when they overlap.
             let touching = self.near;
             let _ = self.close_in();
             self.near = touching;
@@ -56,13 +57,13 @@ impl<V: Vector> Search<'_, V> {
         MotionEnd::Contact
     }
 
-    /// What to answer where the bodies are not certainly apart at the start, and only what comes after it counts.
+    /// The answer if the bodies are not certainly apart at the start, and only a contact after the start counts.
     pub(super) fn begin_in_contact(&mut self) -> MotionEnd<V> {
         let number = V::Scalar::from_f64;
         let Instant { gap, distance, upper, error, .. } = self.near;
         let slack = self.bodies.size() * V::Scalar::EPSILON * number(SLACK) + error * number(2.0);
         if !(slack.is_finite() && distance <= error) {
-            // Neither is known, such as of a support map that returns NaN.
+            // Neither contact nor distance is known, as with a support map that returns NaN.
             return MotionEnd::Undecided(Status::Stalled);
         }
         let stage = if upper < slack * number(-DEEP) { Stage::Deep } else { Stage::Touching };
@@ -71,7 +72,7 @@ impl<V: Vector> Search<'_, V> {
         self.options.tolerance = V::Scalar::ZERO;
         self.raise(stage, gap - slack);
         match self.advance() {
-            // They may have parted before, and touched again.
+            // They may have parted before this contact, or may not have parted.
             MotionEnd::Contact if self.base.stage == Stage::Surfaced => {
                 self.upper = V::Scalar::infinity();
                 MotionEnd::Undecided(Status::Stalled)
@@ -80,7 +81,7 @@ impl<V: Vector> Search<'_, V> {
         }
     }
 
-    /// Measures from the highest level that the bodies are certainly above.
+    /// Raises the level, if the bodies are certainly above a higher one.
     pub(super) fn rise(&mut self) {
         let Base { stage, highest, slack, .. } = self.base;
         let Instant { gap, upper, error, .. } = self.truly(self.near);
@@ -89,7 +90,7 @@ impl<V: Vector> Search<'_, V> {
             self.options.tolerance = self.base.tolerance;
         } else if self.base.overlaps() && !(upper < -slack) {
             self.base.since = self.near.time;
-            // What comes after may be known no better.
+            // What comes after may have as large an error.
             self.raise(Stage::Surfaced, gap - slack - error * V::Scalar::from_f64(ROUNDED));
         } else if stage == Stage::Deep && gap > highest + slack + error * V::Scalar::from_f64(ROUNDED) {
             self.raise(Stage::Risen, highest);
@@ -106,12 +107,12 @@ impl<V: Vector> Search<'_, V> {
         (self.near, self.beyond, self.farther) = (near, beyond, farther);
     }
 
-    /// What is seen at a time, measured from the level.
+    /// An instant with its distances measured from the level.
     pub(super) fn measured(&self, there: Instant<V>) -> Instant<V> {
         if self.base.stage == Stage::Apart { there } else { self.shifted(there, V::Scalar::ONE) }
     }
 
-    /// What is measured from the level, as it was seen.
+    /// An instant that is measured from the level, with its distances measured from contact.
     fn truly(&self, there: Instant<V>) -> Instant<V> {
         self.shifted(there, -V::Scalar::ONE)
     }
@@ -121,12 +122,13 @@ impl<V: Vector> Search<'_, V> {
         let loose = self.base.loose();
         let rounded = if loose > V::Scalar::ZERO { self.bodies.level(there.time, there.normal).1 } else { loose };
         let there = there.above((level - loose * rounded) * by);
-        // To be certainly deeper than they began takes more than to be not certainly less deep.
+        // The depth at the start is known only to its error. To be certainly deeper, the bodies have to be deeper than
+        // the greatest depth that they may have begun with.
         let width = if stage == Stage::Risen { width } else { V::Scalar::ZERO };
         Instant { upper: there.upper + width * by, ..there }
     }
 
-    /// Whether bodies that overlap do so until a later time, so that they cannot have met again before.
+    /// Whether bodies that overlap certainly do so until a later time, so that they do not meet again before it.
     pub(super) fn stay_in_contact(&self, there: &Instant<V>) -> bool {
         if !self.base.overlaps() {
             return true;
@@ -135,8 +137,8 @@ impl<V: Vector> Search<'_, V> {
         upper < V::Scalar::ZERO && self.bodies.stay_in_contact(&self.near, there, -upper)
     }
 
-    /// Where to look at most, of bodies that overlap: not much farther than the last step went, nor beyond where they
-    /// part.
+    /// The latest time to look at while the bodies overlap: no more than two steps like the last one ahead, and not
+    /// after they are expected to part.
     pub(super) fn within(&self, next: V::Scalar) -> V::Scalar {
         if !self.base.overlaps() {
             return next;
@@ -145,12 +147,13 @@ impl<V: Vector> Search<'_, V> {
         let out = upper / closing * V::Scalar::from_f64(OUT);
         let step = self.step() + self.step();
         let step = if closing < V::Scalar::ZERO && out < step { out } else { step };
-        // Of no step at all, the next number.
+        // After a step of no length at all, this is the next number.
         if next > time + step && time + step > time { time + step } else { next }
     }
 
-    /// Whether bodies that are still as deep as they began would take more looks until the end than there are left.
-    /// Every moment of what rolls may be an edge, so that it comes on by steps that shrink with the slack.
+    /// Whether bodies that are still as deep as they began would take more looks until the end than are left. A body
+    /// that rolls may roll over an edge at any time, so that the search comes on only by steps that shrink with the
+    /// slack.
     pub(super) fn is_endless(&self) -> bool {
         let rest = self.options.max_time - self.near.time;
         let left = self.options.max_iterations.saturating_sub(self.looks);
@@ -159,7 +162,8 @@ impl<V: Vector> Search<'_, V> {
             && self.step() * V::Scalar::from_f64(left as f64) < rest
     }
 
-    /// Up to when nothing that counts has happened: the bodies may have sunk by less than the slack from the start on.
+    /// The time up to which nothing that counts has happened. Bodies that are as deep as they began may have sunk by
+    /// less than the slack from the start on.
     pub(super) fn lower(&self) -> V::Scalar {
         match self.base.stage {
             Stage::Apart | Stage::Risen => self.near.time,
@@ -168,12 +172,12 @@ impl<V: Vector> Search<'_, V> {
         }
     }
 
-    /// When the bodies touch, or get deeper than they began, which they are about to do.
+    /// The time when the bodies touch, or get deeper than they began, once they are about to do so.
     pub(super) fn time_of_contact(&self) -> V::Scalar {
         let Instant { time, gap, distance, error, closing, .. } = self.near;
         let zero = V::Scalar::ZERO;
         if matches!(self.base.stage, Stage::Touching | Stage::Deep) {
-            // Since they were as deep as at the start.
+            // The depth that they have gained since the start.
             let sunk = self.base.start - self.truly(self.near).distance + error * V::Scalar::from_f64(2.0);
             let since = sunk / closing;
             return match time > since * V::Scalar::from_f64(POWER) {
@@ -183,7 +187,7 @@ impl<V: Vector> Search<'_, V> {
             };
         }
         let step = distance / closing;
-        // Where they touch at the start, that is when they do.
+        // If they touch already, this is the time.
         let step = if step > zero && gap > zero { step } else { zero };
         time + step
     }

@@ -1,36 +1,37 @@
 //! Why two moving bodies have a point in common throughout an interval, and not only at its ends.
 //!
-//! Let `κ` be a point of each body, moving with it, and `w(κ, t)` the vector between them at the time `t`; all these
-//! vectors are the difference `C(t)`. Where the bodies overlap by `d`, it contains the ball of radius `d` about zero.
-//! Let a convex set `Z` be within `C` at both ends of an interval of length `s`: for every `z` in `Z` there are `κ₀`
-//! and `κ₁` with `w(κ₀, 0) = w(κ₁, s) = z`. In between, with `σ = t/s`, look at the points `(1 − σ)·κ₀ + σ·κ₁`, which
-//! are of the bodies too. What lies between them is
+//! Let `κ` stand for a point of each body, both of which move with their bodies, and let `w(κ, t)` be the vector
+//! between them at the time `t`. All these vectors form the difference `C(t)`. If the bodies overlap by `d`, it
+//! contains the ball of radius `d` about zero. Let a convex set `Z` be within `C` at both ends of an interval of length
+//! `s`: for every `z` in `Z` there are `κ₀` and `κ₁` with `w(κ₀, 0) = w(κ₁, s) = z`. In between, with `σ = t/s`, the
+//! points `(1 − σ)·κ₀ + σ·κ₁` are points of the bodies too. The vector between them is
 //!
 //! > z + σ·(1 − σ)·[ΔR_A·α − ΔR_B·β] + e,
 //!
-//! where `ΔR` is how each body turns in the interval, `α` and `β` lead from the one point of its core to the other, and
-//! `e` is how far the points leave the chords of their paths, by their acceleration. How the bodies move against one
-//! another does not matter. Along a unit vector `m` the last two are at most `E(m)/4`, where `E(m)` is the sum of
-//! `|ΔRᵀm|` times the width of the core and `s²/2` times the acceleration, of both bodies. So zero is in `C` throughout
-//! if `Z` reaches as far as `E(m)/4` along every `m`.
+//! where `ΔR` is the change of each body's rotation in the interval, `α` and `β` lead from the one point of each core
+//! to the other, and `e` is how far the points leave the chords of their paths, by their acceleration. The translation
+//! of the bodies against one another does not occur. Along a unit vector `m` the last two terms are no more than
+//! `E(m)/4`, where `E(m)` is a sum over both bodies: `|ΔRᵀm|` times the width of the core, plus `s²/2` times the
+//! acceleration. So zero is in `C` throughout if `Z` reaches as far as `E(m)/4` along every `m`.
 //!
-//! The ball of radius `d` does that if no `E` is more than `4d`. Bodies that turn about their normal of contact hardly
-//! move along it, but across. So a flat `Z` will also do: the hull of the ball and points `±L·e` across the normal `n`.
-//! If these are in `C`, which is whether the bodies overlap with one of them shifted, it is enough that `E(n) ≤ 2d`,
-//! and that `E ≤ √2·L` across, since the larger of `d` and `L·|m·e|` is more than their mean.
+//! The ball of radius `d` does so if no `E` is more than `4d`. Bodies that turn about their normal of contact hardly
+//! move along it, but they move across it. For these `Z` is a flat set: the hull of the ball and of points `±L·e`
+//! across the normal `n`. These points are in `C` if the bodies overlap with one of them shifted by `±L·e`. Then it is
+//! enough that `E(n) ≤ 2d`, and that `E ≤ √2·L` across the normal, since the larger of `d` and `L·|m·e|` is more than
+//! their mean.
 //!
 //! # Bodies without an inside
-//! They may pass through one another, as a point through a plate or a rod across a rod. The difference of such bodies
-//! has no inside either: they never overlap by more than rounding, and touch at one time only, which nobody can name to
-//! the last bit. That they have touched is certain all the same. Let `w(t)` be corners of the difference, each between
-//! two points that stay with their bodies, as many as there are dimensions, and look at them along a fixed unit vector
-//! `n`. As long as zero is seen within the triangle of the corners (in 2D between two corners), the line through zero
-//! along `n` pierces the triangle at one height `s(t)`, which is continuous. If it is positive at the beginning and
-//! negative at the end, it has been zero in between, and there zero was a point of the triangle, and so of the
+//! Such bodies may pass through one another, as a point through a plate or a rod across a rod. Their difference has no
+//! inside either. So they never overlap by more than rounding, and touch at one time only, which cannot be known to the
+//! last bit. Yet it can be certain that they have touched. Take as many corners of the difference as there are
+//! dimensions, each between two points that stay with their bodies, and project them along a fixed unit vector `n`. As
+//! long as zero is within the projected triangle (in 2D between the two projected corners), the line through zero along
+//! `n` pierces the triangle at one height, which is continuous in time. If this height is positive at the beginning and
+//! negative at the end, it has been zero in between. At that time zero was a point of the triangle, and so of the
 //! difference.
 //!
-//! How the corners are seen in between is known by how far they move at most. A component of their path whose second
-//! derivative is at most `m` in amount is off its chord by at most `m·τ²/8`, with `τ` the duration.
+//! Between the two times the projected corners are known by how far they can have moved. A coordinate of a path whose
+//! second derivative is no more than `m` in amount is no farther from its chord than `m·τ²/8`, with `τ` the duration.
 
 use convex_support::numerics::elementary::hypot;
 use convex_support::{Posed, Scalar, Vector};
@@ -51,11 +52,10 @@ use crate::simplex::MAX_POINTS;
 use crate::symmetric::{Across, axes_across, cross, dot};
 use crate::unit::{is_moderate, length_bound};
 
-/// What corners are wrong by, in units of what the pair says of its support points: they were turned back and forth
-/// beside that.
+/// The error of corners, in units of the error of the pair's support points: corners were also turned back and forth.
 const ERRORS: f64 = 4.0;
 
-/// Corners as seen along a unit vector: across it, and how high they are.
+/// Corners projected along a unit vector: their coordinates across it, and their heights along it.
 struct SeenCorners<S> {
     at: [Across<S>; MAX_POINTS],
     heights: [S; MAX_POINTS],
@@ -85,7 +85,7 @@ impl<V: Vector> MovingPair<'_, V> {
         shifts.all(|shift| times.iter().all(|&time| self.overlap_shifted(time, shift)))
     }
 
-    /// Whether the bodies certainly overlap at a time if one of them is shifted.
+    /// Whether the bodies certainly overlap at a time with one of them shifted.
     fn overlap_shifted(&self, time: V::Scalar, shift: V) -> bool {
         let placed = self.placed(time);
         let Ok(a) = Posed::translated(&placed.a, shift) else { return false };
@@ -114,19 +114,19 @@ impl<V: Vector> MovingPair<'_, V> {
         }
         let seen_before = SeenCorners::along(near.normal, &before);
         let seen_after = SeenCorners::along(near.normal, &after);
-        // Wherever the corners are in between, each is seen no farther than this from where it was.
+        // Between the two times no projected corner is farther than `moved` from where it was at the first.
         let is_seen_within = seen_before.room::<V>() > moved;
         let (height, lost) = seen_after.height_at_zero::<V>();
         // NaN is no proof.
         is_seen_within && near.gap > Scalar::ZERO && height < -(error + lost)
     }
 
-    /// Corners of the difference whose face is nearest to zero, as many as there are dimensions.
+    /// The corners of the face of the difference that is nearest to zero, if they are as many as there are dimensions.
     fn closest_corners(&self, placed: &Placed<'_, V>, axis: V) -> Option<Corners<V>> {
         let cores = placed.cores();
         let mut pair = Pair::new(placed, cores.each_ref());
         let size = pair.size(placed.offset);
-        // What has a radius has an inside.
+        // A body with a radius has an inside.
         if pair.radius() > Scalar::ZERO || !is_moderate(size) {
             return None;
         }
@@ -141,21 +141,21 @@ impl<V: Vector> MovingPair<'_, V> {
         (state.simplex.points().len() == V::DIM).then_some(corners)
     }
 
-    /// How far a point of the difference may be off the chord of its path: the amount of each coordinate's second
-    /// derivative is bounded along both directions of its axis.
+    /// How far a point of the difference may be from the chord of its path. The amount of the second derivative of each
+    /// coordinate is bounded by the bounds along both directions of its axis.
     fn off_chord(&self, [from, to]: [V::Scalar; 2]) -> V::Scalar {
         let most = |n: V| self.acceleration_along(TurningPlane { from: n, to: n }, [from, to]);
         let mut m = V::Scalar::ZERO;
         for axis in (0..V::DIM).map(V::axis) {
-            // One of them may be negative.
+            // One of the two bounds may be negative.
             m += most(axis).abs() + most(-axis).abs();
         }
-        // Of all coordinates, and with a margin for rounding: 1/8 < 1/4.
+        // A quarter in place of an eighth leaves room for rounding.
         m * (to - from) * (to - from) * Scalar::from_f64(0.25)
     }
 }
 
-/// What a point of the difference is wrong by.
+/// A bound on the error of a point of the difference.
 fn error_of<V: Vector>(placed: &Placed<'_, V>) -> V::Scalar {
     let cores = placed.cores();
     let pair = Pair::new(placed, cores.each_ref());
@@ -168,10 +168,10 @@ impl<S: Scalar> SeenCorners<S> {
         Self { at: points.map(|p| (e.dot(p), f.dot(p))), heights: points.map(|p| n.dot(p)) }
     }
 
-    /// The distance of zero from the boundary of what is seen, if it is seen within; else zero or less.
+    /// The distance of zero from the boundary of the projection, if zero is within it; otherwise zero or less.
     ///
-    /// If no corner is seen farther from where it is than that, zero is still seen within: else it would have left by
-    /// one side, whose ends would both have come at least so far towards it.
+    /// Zero stays within the projection as long as no projected corner moves farther than that: to let zero out by a
+    /// side, the ends of that side would have to come towards it by at least that distance.
     fn room<V: Vector<Scalar = S>>(&self) -> S {
         let at = &self.at;
         if V::DIM == 2 {
@@ -185,16 +185,16 @@ impl<S: Scalar> SeenCorners<S> {
         let heights = [height(0, 1), height(1, 2), height(2, 0)];
         let most = heights.into_iter().fold(S::neg_infinity(), S::max);
         let least = heights.into_iter().fold(S::infinity(), S::min);
-        // Clockwise all are negative.
+        // If the corners are in clockwise order, all of these are negative.
         least.max(-most)
     }
 
-    /// The height at which the line through zero pierces the triangle or segment, which zero is seen within, and what
-    /// products and quotients lose of it.
+    /// The height at which the line through zero pierces the triangle or segment, and a bound on the rounding of this
+    /// height. Zero has to be within the projection.
     ///
-    /// With `H` the greatest of the heights, the parts of a segment are right to a few ε, so that `8·ε·H` is lost at
-    /// most. An area is wrong by `2·ε·L²`, with `L` how far the corners are seen from zero, and three of them change
-    /// the height by `12·ε·H·L²/area` and as much as before.
+    /// Let `H` be the greatest of the heights. The parts of a segment are right to a few ε, so that no more than
+    /// `8·ε·H` is lost. An area is wrong by `2·ε·L²`, where `L` is the distance of the farthest projected corner from
+    /// zero. Three areas change the height by `12·ε·H·L²/area`, and the sums lose as much as for a segment.
     fn height_at_zero<V: Vector<Scalar = S>>(&self) -> (S, S) {
         let (at, heights) = (&self.at, &self.heights);
         let epsilon = S::EPSILON * S::from_f64(16.0);

@@ -1,5 +1,5 @@
-//! What the search for a first contact asks of two moving bodies, what is known of them at one time, and from which
-//! level their distances are measured.
+//! The questions that the search for a first contact asks about two moving bodies, what is known of the bodies at one
+//! time, and the level from which their distances are measured.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -7,41 +7,41 @@ use num_traits::Float as _;
 use super::trajectory::TurningPlane;
 use crate::unit::length_bound;
 
-/// A step may change the distance by what the closing speeds do not predict, but for this part of what they have
-/// changed.
+/// The closing speeds at both ends of a step predict how the distance changes. The step counts as smooth if the
+/// distance differs from that by no more than this part of what the change of the speeds makes of it.
 const KINK: f64 = 0.1;
 
-/// Bodies that are apart, or overlap, by fewer errors than this are looked at closely.
+/// Bodies whose distance, or overlap, is less than this many errors of it are looked at exactly.
 pub(super) const NEAR: f64 = 64.0;
 
-/// How much lower than contact a level may be where bodies touch, in units of what their places are rounded by at the
-/// time.
+/// By how much a level is lowered for bodies that touch, in units of the rounding of their places at the time.
 pub(super) const ROUNDED: f64 = 6.0;
 
-/// What is known of the pair at one time.
+/// What is known of two bodies at one time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Instant<V: Vector> {
     pub(super) time: V::Scalar,
-    /// The unit vector from `b` to `a` along which they are nearest, or along which the way out of one another is the
-    /// shortest.
+    /// The unit vector from `b` to `a` along which they are nearest to one another, or, if they overlap, along which
+    /// the shortest way apart goes.
     pub(super) normal: V,
-    /// By how much a plane across the normal certainly separates the bodies; not positive where none may.
+    /// The distance by which a plane across the normal certainly separates the bodies. It is not positive if they may
+    /// touch.
     pub(super) gap: V::Scalar,
-    /// The signed distance as measured, which is certainly not more than `upper`.
+    /// The signed distance as computed, and a certain upper bound of it.
     pub(super) distance: V::Scalar,
     pub(super) upper: V::Scalar,
-    /// How far the measured distance is from the gap.
+    /// The difference between the computed distance and the gap.
     pub(super) error: V::Scalar,
-    /// How fast the closest points come nearer.
+    /// How fast the closest points come nearer to one another.
     pub(super) closing: V::Scalar,
-    /// The closest point of `b`, or the one deepest in `a`, in the world.
+    /// The point of `b` that is closest to `a`, or deepest in it, in the world.
     pub(super) point: V,
-    /// Whether that is as well as it can be known, and not from afar.
+    /// Whether this is as exact as it can be known. If not, it is rough.
     pub(super) is_close: bool,
 }
 
 impl<V: Vector> Instant<V> {
-    /// The same with distances measured from a level, instead of from contact.
+    /// The instant with its distances measured from a level instead of from contact.
     #[inline(always)]
     pub(super) fn above(self, level: V::Scalar) -> Self {
         Self { gap: self.gap - level, distance: self.distance - level, upper: self.upper - level, ..self }
@@ -52,8 +52,8 @@ impl<V: Vector> Instant<V> {
         self.upper < V::Scalar::ZERO
     }
 
-    /// Whether the distance went from here to another time without a kink: the mean of the closing speeds tells what it
-    /// changed by, but for a part of what they did.
+    /// Whether the distance has changed without a kink from here to another time: by the mean of the closing speeds
+    /// times the duration, up to a part of what the change of the speeds makes of it.
     pub(super) fn goes_smoothly_to(&self, to: &Self) -> bool {
         let (half, duration) = (V::Scalar::from_f64(0.5), to.time - self.time);
         let foretold = (self.closing + to.closing) * half * duration;
@@ -63,58 +63,58 @@ impl<V: Vector> Instant<V> {
     }
 }
 
-/// What need not be known exactly of an instant.
+/// Bounds beyond which a distance or depth need not be known exactly.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits<S> {
-    /// How far apart the bodies are, once they are certainly farther apart than this.
+    /// If the bodies are certainly farther apart than this, it is enough to know that.
     pub(super) distance: S,
-    /// How deep they are in one another, once they are certainly deeper than this.
+    /// If they are certainly deeper in one another than this, it is enough to know that.
     pub(super) depth: S,
 }
 
-/// From where distances are measured: from contact, by default.
+/// The level from which distances are measured. By default this is contact.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Base<S> {
-    /// The signed distance that counts as contact, but for how the bodies' places are [rounded](Self::loose).
+    /// The signed distance that counts as contact, before the allowance for the [rounding](Self::loose) of the bodies'
+    /// places.
     pub(super) level: S,
     pub(super) stage: Stage,
-    /// The signed distance at the start, what it certainly is not more than, and by how much that is more than what it
-    /// certainly is not less than.
+    /// The signed distance at the start, its upper bound, and the width of its bracket.
     pub(super) start: S,
     pub(super) highest: S,
     pub(super) width: S,
     pub(super) slack: S,
-    /// When the bodies came to the surface.
+    /// The time when the bodies became too shallow for their overlap to be certain.
     pub(super) since: S,
-    /// The tolerance that was asked for. A start in contact is as near as the slack, and that of what follows from it
-    /// is none.
+    /// The tolerance that was asked for. It holds again once the bodies are apart; until then the tolerance is 0, since
+    /// they are as near to contact as the slack from the start on.
     pub(super) tolerance: S,
 }
 
-/// What the bodies have done so far.
+/// What the bodies have done since the start.
 #[derive(Clone, Copy, Default, PartialEq)]
 pub(super) enum Stage {
     /// They have been apart, or a contact counts whatever was before.
     #[default]
     Apart,
-    /// They have touched from the start on, to rounding.
+    /// They have touched since the start, to rounding.
     Touching,
-    /// They have overlapped from the start on, and have not been less deep.
+    /// They have overlapped since the start, and are not known to be less deep than they began.
     Deep,
     /// They overlap, less deep than they began.
     Risen,
-    /// They overlapped, and touch, to rounding: they may have been apart, or not.
+    /// They overlapped, and now touch, to rounding. They may have been apart in between.
     Surfaced,
 }
 
 impl<S: Scalar> Base<S> {
-    /// How much lower the level is, in units of what the places of the bodies are rounded by at the time.
+    /// By how much the level is lowered, in units of the rounding of the bodies' places at the time.
     pub(super) fn loose(&self) -> S {
         let is_exact = matches!(self.stage, Stage::Apart | Stage::Risen);
         if is_exact { S::ZERO } else { S::from_f64(ROUNDED) }
     }
 
-    /// Whether the bodies are to stay in contact until they are seen to part.
+    /// Whether every interval has to prove that the bodies stay in contact.
     pub(super) fn overlaps(&self) -> bool {
         matches!(self.stage, Stage::Deep | Stage::Risen)
     }
@@ -128,22 +128,22 @@ pub(super) trait Approach<V: Vector> {
     /// The support points computed of each body so far.
     fn iterations(&self) -> usize;
 
-    /// The direction from `b` to `a` at the start, as far as it can be told without looking; of any length.
+    /// A direction from `b` to `a` at the start, of any length, which takes no query to know.
     fn between(&self) -> V;
 
-    /// The bodies at a time, looked at first along `axis`: as well as it can be known, or roughly where they are well
-    /// apart and are not to be looked at closely.
+    /// What is known of the bodies at a time, with `axis` as the first guess of the normal. It is as exact as it can be
+    /// known, or if this is not asked for and the bodies are well apart, rough.
     fn at(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>, is_close: bool) -> Instant<V>;
 
-    /// How far apart the plane across a unit vector keeps the bodies at a time, and what that is wrong by at most.
+    /// How far apart the plane across a unit vector keeps the bodies at a time, and a bound on the error of that.
     fn level(&self, time: V::Scalar, normal: V) -> (V::Scalar, V::Scalar);
 
     /// An upper bound of the second derivative, throughout an interval, of the distance of any point of `a` from any
     /// point of `b` along a normal that changes at a constant rate.
     fn acceleration_along(&self, plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar;
 
-    /// Whether balls around the bodies, which move at constant velocities, stay apart throughout an interval, which may
-    /// be infinite; then the direction from `b` to `a` where they are closest.
+    /// The direction from `b` to `a`, at the time when they are closest, of balls around the bodies that move at
+    /// constant velocities, if these certainly stay apart throughout an interval. The interval may be infinite.
     fn stays_far_apart(&self, interval: [V::Scalar; 2]) -> Option<V>;
 
     /// Whether the bodies, which overlap by `depth` at least at two times, certainly have a point in common at all
@@ -153,7 +153,7 @@ pub(super) trait Approach<V: Vector> {
     /// The velocities, at a time, of the points of both that are at `point` then.
     fn velocities(&self, time: V::Scalar, point: V) -> [V; 2];
 
-    /// The speed of the closest points against one another, where they are.
+    /// A bound on the speed of the closest points against one another.
     fn speed_at(&self, there: &Instant<V>) -> V::Scalar {
         let [a, b] = self.velocities(there.time, there.point);
         length_bound(a) + length_bound(b)

@@ -1,4 +1,4 @@
-//! A body and its motion, and what of a box does not change as it moves.
+//! A body and its motion, and the parts of a box that do not change as it moves.
 
 use convex_support::{AngularVelocity, BoundingSphere, Core, CoreKind, Matrix, Parallelotope, Scalar, Spin, Vector};
 use num_traits::Float;
@@ -10,7 +10,7 @@ use crate::double::{LEAST, Vec3, array, cross, dot, vector};
 use crate::shape::Shape;
 use crate::unit::length_bound;
 
-/// The cosine of the angle between two edges of what is no box.
+/// If the cosine of the angle between two edges is more than this, a parallelotope does not count as a box.
 const SKEW: f64 = 1e-6;
 
 /// A body and its motion.
@@ -18,13 +18,13 @@ pub(super) struct MovingBody<'s, V: Vector> {
     pub(super) shape: Shape<'s, V>,
     motion: &'s dyn Trajectory<Vector = V>,
     course: Course<V>,
-    /// What the shape is split into at time 0, with its radius grown by the target distance.
+    /// The core of the shape at time 0. Its radius is increased by the target distance.
     pub(super) core: Core<V>,
 }
 
-/// What of a motion does not depend on time.
+/// The parts of a motion that do not depend on time.
 enum Course<V: Vector> {
-    /// The body stays where it is, as one of two bodies mostly does.
+    /// The body stays where it is. Of two bodies one mostly does.
     Rest,
     Rigid(Rigid<V>),
     Other,
@@ -33,7 +33,7 @@ enum Course<V: Vector> {
 /// A rigid motion of a body.
 struct Rigid<V: Vector> {
     motion: RigidMotion<V>,
-    /// A bound on what rounding the shift loses per unit of time.
+    /// A bound on the rounding error of the shift per unit of time.
     shift_error: V::Scalar,
     turning: Option<Turning<V>>,
 }
@@ -49,14 +49,14 @@ struct Turning<V: Vector> {
     reach: V::Scalar,
 }
 
-/// Where a body is at a time: it is turned about its origin, which has moved.
+/// Where a body is at a time. The body is turned about its own origin, which is moved.
 pub(super) struct Place<V: Vector> {
-    /// How far the centre that the body is turned about has moved, and how far turning about it has moved the origin.
+    /// How far the centre of the rotation has moved, and how far the rotation about it has moved the body's origin.
     pub(super) shift: V,
     pub(super) swing: V,
     /// The rotation, if it has turned.
     pub(super) rotation: Option<V::Matrix>,
-    /// A bound on the error of a point of the core by all that.
+    /// A bound on the error that all of this brings to a point of the core.
     pub(super) error: V::Scalar,
 }
 
@@ -100,13 +100,13 @@ impl<'s, V: Vector> MovingBody<'s, V> {
         }
     }
 
-    /// The shape at a place, with its origin put at the given point, which is wrong by `error` at most.
+    /// The shape at a place, with its origin put at the given point, which is wrong by no more than `error`.
     #[inline(always)]
     pub(super) fn moved(&self, place: &Place<V>, origin: V, error: V::Scalar) -> Moved<'_, V> {
         Moved::new(self.shape, Core { origin, ..self.core }, place.rotation, error)
     }
 
-    /// A bound on the acceleration of points of the core, as of [`Trajectory::acceleration_along`].
+    /// A bound on the acceleration of points of the core, as [`Trajectory::acceleration_along`] defines it.
     #[inline(never)]
     pub(super) fn acceleration_along(&self, plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar {
         match &self.course {
@@ -119,9 +119,9 @@ impl<'s, V: Vector> MovingBody<'s, V> {
         }
     }
 
-    /// How far a point of the core may be, throughout an interval, from where it would be if the body went from its
-    /// first place to its last by a constant change of all coordinates, and from another point of the core, in either
-    /// direction along a unit vector; see [`in_contact`](super::in_contact).
+    /// The body's part of `E(m)`, the bound of [`in_contact`](super::in_contact) along a unit vector in an interval:
+    /// the change of its rotation times the width of its core, plus what its acceleration takes points from the chords
+    /// of their paths.
     pub(super) fn strays(&self, n: V, [from, to]: [V::Scalar; 2]) -> V::Scalar {
         let extent = self.core.extent;
         let [before, after] =
@@ -143,7 +143,7 @@ impl<'s, V: Vector> MovingBody<'s, V> {
         }
     }
 
-    /// A ball that moves at constant velocity and contains the core throughout the interval, as of
+    /// A ball that moves at constant velocity and contains the core throughout the interval; see
     /// [`Trajectory::moving_ball`].
     pub(super) fn moving_ball(&self, interval: [V::Scalar; 2]) -> MovingBall<V> {
         let ball = self.ball();
@@ -161,7 +161,7 @@ impl<'s, V: Vector> MovingBody<'s, V> {
 
 impl<V: Vector> Rigid<V> {
     fn new(motion: RigidMotion<V>, core: &Core<V>) -> Self {
-        // One rounding of each coordinate.
+        // Each coordinate is rounded once.
         let shift_error = length_bound(motion.velocity) * V::Scalar::EPSILON * V::Scalar::from_f64(0.5);
         let turning = (motion.angular_velocity != Default::default()).then(|| {
             let arm = core.origin - motion.center;
@@ -196,8 +196,8 @@ impl<V: Vector> Place<V> {
     const START: Self = Self { shift: V::ZERO, swing: V::ZERO, rotation: None, error: V::Scalar::ZERO };
 }
 
-/// A core that is a box, as its body starts: its centre relative to the body's origin, unit vectors along its edges,
-/// and half the lengths of these.
+/// A core that is a box, at time 0: its centre relative to the body's origin, unit vectors along its edges, and half
+/// the lengths of the edges.
 #[derive(Clone, Copy)]
 pub(super) struct Block<V> {
     pub(super) center: V,
@@ -206,7 +206,7 @@ pub(super) struct Block<V> {
 }
 
 impl<V: Vector> Block<V> {
-    /// The core of a shape, if it is a box without a radius. In space it may be flat.
+    /// The core of a shape, if it is a box without a radius. In space it may be a rectangle.
     pub(super) fn of(shape: Shape<'_, V>, core: &Core<V>) -> Option<Self> {
         if !matches!(core.kind, CoreKind::Polytope) || core.radius > Scalar::ZERO {
             return None;
@@ -222,7 +222,7 @@ impl<V: Vector> Block<V> {
         if let Some(i) = halves.iter().position(|&half| half == 0.0) {
             units[i] = cross(&units[(i + 1) % 3], &units[(i + 2) % 3]);
         }
-        // If another edge has no length either, this is NaN.
+        // If two edges have no length, this is NaN, and the core does not count as a box.
         let is_box = (0..3).all(|i| dot(units[i], units[(i + 1) % 3]).abs() < SKEW);
         is_box.then(|| Self { center, units: units.map(vector), halves })
     }

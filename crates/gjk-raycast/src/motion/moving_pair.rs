@@ -1,4 +1,5 @@
-//! Two bodies and their motions, and the table of what a search for their contact does beyond its leanest form.
+//! Two bodies and their motions, and the table of functions that the search for their contact uses beyond its leanest
+//! form.
 
 use core::cell::{Cell, RefCell};
 
@@ -28,15 +29,15 @@ use crate::{
 pub(super) struct MovingPair<'s, V: Vector> {
     pub(super) shapes: &'s dyn Shapes<Vector = V>,
     extra: Extra<FullMotion<V>>,
-    /// What was found of the shapes at the last time, which is mostly found again.
+    /// The hints of the last time, which mostly fit again.
     pub(super) hints: Cell<[Hint; 2]>,
     pub(super) a: MovingBody<'s, V>,
     pub(super) b: MovingBody<'s, V>,
     /// Whether the closest points of the cores were known in closed form at the start.
     knows_points: bool,
-    /// Both cores as they start, if they are boxes.
+    /// Both cores at time 0, if they are boxes.
     boxes: Option<[Block<V>; 2]>,
-    /// What spans the facet that they were seen by at the last look, if zero's foot was within it.
+    /// The edges that span the facet of the last look, if zero's foot was within it.
     pub(super) facet: Cell<Option<[usize; 2]>>,
     /// The corners of the faces that were closest at the last look.
     pub(super) closest: RefCell<Corners<V>>,
@@ -44,7 +45,7 @@ pub(super) struct MovingPair<'s, V: Vector> {
     iterations: Cell<usize>,
 }
 
-/// The functions of a search besides GJK at one time and the points that were closest before.
+/// The functions that a search uses besides GJK and the points that were closest at the last look.
 #[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct FullMotion<V: Vector> {
     closer: &'static Closer<V>,
@@ -100,7 +101,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         Self { shapes, extra, hints, a, b, knows_points, boxes, facet, closest, iterations }
     }
 
-    /// Counts support points.
+    /// Adds to the number of support points.
     pub(super) fn count(&self, iterations: usize) {
         self.iterations.set(self.iterations.get() + iterations);
     }
@@ -111,11 +112,12 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         self.placed_here(time)
     }
 
-    /// The same, compiled into its caller.
+    /// The same as [`placed`](Self::placed), compiled into its caller.
     #[inline(always)]
     pub(super) fn placed_here(&self, time: V::Scalar) -> Placed<'_, V> {
         let (a, b) = (self.a.place(time), self.b.place(time));
-        // What lies between is of the order of the bodies, however far from the world's origin they are.
+        // The vector between the bodies is about as long as the bodies are large, however far from the world's origin
+        // they are.
         let between = self.a.core.origin - self.b.core.origin;
         let (shifts, swings) = (a.shift - b.shift, a.swing - b.swing);
         let offset = between + shifts + swings;
@@ -134,14 +136,14 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         }
     }
 
-    /// Two boxes at a time, if that is what they are.
+    /// The bodies at a time, if both are boxes.
     #[inline(always)]
     fn by_facets(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>, is_close: bool) -> Option<Instant<V>> {
         (self.extra.get()?.by_boxes)(self, time, self.boxes.as_ref()?, axis, limits, is_close)
     }
 
-    /// The bodies at a time, of which neither closed form tells enough: roughly, by what was closest at the last look,
-    /// or by their signed distance.
+    /// The bodies at a time, if neither closed form tells enough: by GJK, if a rough answer will do; by the corners
+    /// that were closest at the last look; or by the signed distance.
     #[inline(never)]
     fn by_search(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>, is_rough: bool) -> Instant<V> {
         let placed = self.placed(time);
@@ -153,7 +155,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         known.unwrap_or_else(|| self.by_signed_distance(&placed, axis, limits))
     }
 
-    /// The bodies where they are at a time, by their signed distance.
+    /// The bodies at a time, by their signed distance.
     #[inline(never)]
     fn by_signed_distance(&self, placed: &Placed<'_, V>, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
         let wanted =
@@ -175,8 +177,8 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         }
     }
 
-    /// The bodies where they are at a time, seen from afar: a plane across a unit vector, between points of the cores,
-    /// relative to their origins, keeps them as far apart as the given distance, which is wrong by an error.
+    /// A rough instant. A plane across the unit vector keeps the bodies apart by the given distance, which has the
+    /// given error. The points of the cores are relative to the bodies' origins.
     #[inline(always)]
     pub(super) fn across(
         &self,
@@ -192,7 +194,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         Instant { time, normal, gap, distance, upper, error, closing, point, is_close: false }
     }
 
-    /// How fast points of both bodies come nearer to one another along a normal.
+    /// How fast two points, one of each body, come nearer to one another along a normal.
     #[inline(always)]
     pub(super) fn closing(&self, time: V::Scalar, normal: V, [point_a, point_b]: [V; 2]) -> V::Scalar {
         normal.dot(self.b.velocity(time, point_b) - self.a.velocity(time, point_a))
@@ -227,7 +229,7 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
         let cores = placed.cores();
         let mut pair = Pair::new(placed, cores.each_ref());
         let size = pair.size(placed.offset);
-        // Of numbers out of range nothing is known.
+        // If the size is out of range, nothing is known.
         if !is_moderate(size) {
             return (V::Scalar::nan(), Float::infinity());
         }
@@ -248,7 +250,7 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
         let duration = interval[1] - interval[0];
         // The time at which start + t·velocity is shortest.
         let (slope, squared) = (start.dot(velocity), velocity.length_squared());
-        // Of velocities whose squares are out of range, that time is not known.
+        // If the square of the velocity is out of range, that time is not known.
         if !(is_comfortable(squared) && slope.is_finite() || velocity == V::ZERO) {
             return None;
         }
@@ -258,7 +260,7 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
         let moved = (length_bound(a.velocity) + length_bound(b.velocity)) * nearest;
         let measure = reach + length_bound(a.start) + length_bound(b.start) + moved;
         let margin = measure * Scalar::from_f64(32.0) * Scalar::EPSILON + lost_to_underflow(measure);
-        // NaN is not apart.
+        // If a number is NaN, the balls are not known to be apart.
         if between.norm() > reach + margin { between.unit() } else { None }
     }
 
@@ -274,8 +276,8 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
         self.extra.get().is_some_and(|extra| (extra.have_met)(self, near, time))
     }
 
-    /// Not the point that is deepest in `a`: where the way out of a small body is through a large one, it is far
-    /// behind it.
+    /// This is not the point of `b` that is deepest in `a`: if a small body has to leave through a large one, that
+    /// point is far behind the small body.
     #[cold]
     #[inline(never)]
     fn common_point(&self, there: &Instant<V>) -> V {

@@ -1,13 +1,16 @@
-//! Looks at two moving bodies by points that are known to be closest, or were so at the last look.
+//! What is known of two moving bodies at one time by points that are known to be closest, or that were so at the last
+//! look.
 //!
-//! Of balls and capsules the closest points of the cores are known in closed form. One support point proves that a
-//! plane between the points keeps the bodies apart. Far from contact that is all. Near contact the same point tells the
-//! distance as well as it can be known; and where the bodies overlap but their cores do not, the points prove that.
+//! For balls and capsules the closest points of the cores are known in closed form. One support point proves that a
+//! plane between the points keeps the bodies apart. Far from contact this is enough. Near contact the same support
+//! point tells the distance as exactly as it can be known. If the bodies overlap but their cores do not, the closest
+//! points prove the overlap.
 //!
-//! Of other bodies the same corners are mostly closest near contact as a moment ago. Then a plane across them is known,
-//! and one support point proves that it separates the bodies. Where they overlap, the closest points of their cores
-//! prove that if they are nearer than the radii; and of cores that overlap themselves, a simplex of the corners and the
-//! point of the difference farthest from them has zero inside.
+//! For other bodies near contact the corners that were closest a moment ago are mostly closest still. Then a plane
+//! across them is known, and one support point proves that it separates the bodies. If the bodies overlap but their
+//! cores do not, the closest points of the cores prove the overlap, since they are nearer than the radii. If the cores
+//! overlap, the simplex of the corners and the farthest point of the difference behind them has zero inside, which
+//! proves it.
 
 use convex_support::{Scalar, SupportMap as _, Vector};
 use num_traits::Float;
@@ -21,18 +24,20 @@ use crate::separation::{Cores, Uncertainty, slack};
 use crate::simplex::{MAX_POINTS, project};
 use crate::unit::is_moderate;
 
-/// What points of both cores may be off a plane that they are said to be closest across, in errors.
+/// How far the closest points of both cores may be from the support points across their plane, in errors, for them to
+/// count as closest.
 const IN_PLANE: f64 = 4.0;
 
-/// The direction of closest points that are apart by this part of the size of both bodies is known to rounding.
+/// If closest points are apart by this part of the size of both bodies, the direction between them is known to
+/// rounding.
 const LONG: f64 = 1.0 / 16.0;
 
 impl<V: Vector> MovingPair<'_, V> {
-    /// The pair at a time by the closest points of its cores; `None` where they do not tell as much as is wanted. What
-    /// is seen closely is to be on the side of `axis`.
+    /// The bodies at a time, by the closest points of their cores. `None` if these do not tell enough, or, near
+    /// contact, if the bodies are not on the side of `axis`.
     ///
-    /// All is compiled into one function, so that what is known of the bodies at the time need not be written to memory
-    /// and read again.
+    /// All of it is compiled into one function, so that the places of the bodies need not be written to memory and read
+    /// again.
     #[inline(never)]
     pub(super) fn by_closest_points(
         &self,
@@ -50,7 +55,7 @@ impl<V: Vector> MovingPair<'_, V> {
         let v = pair.vector_between(points, offset);
         let length = v.length();
         let unit = v / length;
-        // NaN is not apart.
+        // If a number is NaN, the bodies are not known to be apart.
         if !(length > Scalar::ZERO) {
             return None;
         }
@@ -67,17 +72,17 @@ impl<V: Vector> MovingPair<'_, V> {
         if !is_known || limits.depth > Scalar::ZERO {
             return None;
         }
-        // The origin of `b` is at zero, so that nothing is lost of their difference.
+        // The origin of `b` is at zero, so that the difference of the origins is exact.
         let known = Uncertainty::of_exact_offset([placed.a.rounding(), placed.b.rounding()], offset);
         let error_along = known.along(unit);
         let error = error_along + slack(lower, radius);
-        // NaN is not in the plane.
+        // If a number is NaN, the points do not count as closest.
         if !(unit.dot(v) - lower <= error * Scalar::from_f64(IN_PLANE)) {
             return None;
         }
         let mut upper: V::Scalar = Float::infinity();
         if !(distance > error) {
-            // Points of segments are rounded by a product and a sum more than support points.
+            // Points of segments are rounded by one product and one sum more than support points.
             let lost = V::Scalar::EPSILON * pair.extent();
             upper = known.greatest_length(length, error_along) - radius + slack(length, radius) + lost;
             if !(upper < Scalar::ZERO) {
@@ -87,8 +92,8 @@ impl<V: Vector> MovingPair<'_, V> {
         Some(Instant { upper, is_close: true, ..self.across(&placed, unit, points, [distance, error]) })
     }
 
-    /// The bodies at a time as well as it can be known, if what was closest at the last look is so still, and proves
-    /// that they are apart or overlap.
+    /// The bodies at a time, as exactly as they can be known, if the corners that were closest at the last look are so
+    /// still and prove that the bodies are apart or that they overlap.
     pub(super) fn near_look(&self, placed: &Placed<'_, V>, axis: V) -> Option<Instant<V>> {
         let cores = placed.cores();
         let pair = Pair::new(placed, cores.each_ref());
@@ -109,7 +114,7 @@ impl<V: Vector> MovingPair<'_, V> {
         let (scale, radius) = (cores.scale(), cores.radius());
         let lower = unit.dot(cores.support(-unit)?.point) * scale;
         let error = cores.error_along(unit) * scale + slack(lower, radius);
-        // NaN is not in the plane.
+        // If a number is NaN, the points do not count as closest.
         let is_closest = unit.dot(face.v) - lower <= error * Scalar::from_f64(IN_PLANE);
         let distance = lower - radius;
         let mut upper = V::Scalar::infinity();
@@ -121,11 +126,11 @@ impl<V: Vector> MovingPair<'_, V> {
         is_known.then(|| Instant { upper, is_close: true, ..self.across(placed, unit, points, [distance, error]) })
     }
 
-    /// What the signed distance is certainly not more than, if the corners of a face prove that the bodies overlap;
-    /// infinity if not.
+    /// An upper bound of the signed distance, if the corners of a face prove that the bodies overlap; infinity if they
+    /// do not. `None` if a support point is not known.
     ///
-    /// Each is looked for anew, along a direction that leans away from the others: as it was kept, it is not known as
-    /// well as a support point.
+    /// Each corner is looked for anew, along a direction that leans away from the others, since a corner that was kept
+    /// is less exact than a support point.
     fn overlap_of_corners(&self, cores: &mut Cores<'_, V>, face: &CornerFace<V>, unit: V) -> Option<V::Scalar> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         let (scale, radius, dimension) = (cores.scale(), cores.radius(), V::DIM);

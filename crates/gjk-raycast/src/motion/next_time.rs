@@ -1,5 +1,5 @@
-//! Which time the search for a first contact looks at next. That decides how long it takes, and nothing of what is
-//! proved.
+//! The time that the search for a first contact looks at next. This decides how long the search takes, and nothing
+//! about what it proves.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -8,20 +8,20 @@ use super::first_contact::{AIM, PATIENCE, Search};
 use super::instant::Instant;
 use super::trajectory::TurningPlane;
 
-/// How much of the farthest end that can be expected to be proved is asked for.
+/// The next interval is this part of the longest one that can be expected to be proved.
 const CAUTION: f64 = 0.9;
-/// The part of the third-order change of a step that is left to go.
+/// The part of the third-order change in a step that the step leaves undone.
 const LEFT: f64 = 0.05;
 /// Steps of Newton's method from the root of a parabola to that of a cubic.
 const STEPS: usize = 2;
 
 impl<V: Vector> Search<'_, V> {
-    /// Where to look next; `None` where no time lies between those known.
+    /// The time to look at next; `None` if no time lies between those that are known.
     ///
-    /// With the gap `g` and the speed `w` at which it closes, it is expected to be `g − w·s` after the time `s`. So
-    /// with `m = M/2`, of the `M` of the last step, an interval can be expected to be proved if `√g + √(g − w·s) >
-    /// √m·s`, which ends at `s = 2√(g/m) − w/m` if the gap is still open then, that is if `w < √(m·g)`. Otherwise the
-    /// contact itself is within reach.
+    /// A gap `g` that closes at the speed `w` is expected to be `g − w·s` after the time `s`. Let `m = M/2`, with the
+    /// `M` of the last step. An interval can be expected to be proved if `√g + √(g − w·s) > √m·s`. This holds up to
+    /// `s = 2√(g/m) − w/m` if the gap is still open then, which means `w < √(m·g)`. Otherwise the contact itself is
+    /// within reach.
     pub(super) fn next_time(&self) -> Option<V::Scalar> {
         let from_f64 = V::Scalar::from_f64;
         let Instant { time, gap, distance, error, closing, .. } = self.near;
@@ -35,30 +35,31 @@ impl<V: Vector> Search<'_, V> {
         };
         let next = time + step;
         if let Some(ahead) = self.ahead {
-            // It was too far to be proved.
+            // The interval up to there was too long to be proved.
             let nearer = time + (ahead.time - time) * from_f64(0.5);
             return Some(if next < nearer { next } else { nearer }).filter(|&next| next > time && next < ahead.time);
         }
         if let Some(beyond) = self.beyond {
             return self.between(next, &beyond).filter(|&next| next > time && next < beyond.time);
         }
-        // NaN goes to the end, which may be infinitely far.
+        // If a number is NaN, the search goes to the end, which may be infinite.
         let next = if next < end { next } else { end };
         let next = if next.is_finite() { next } else { time + time.max(self.step()) };
         Some(next).filter(|&next| next > time)
     }
 
-    /// Where to look between [`near`](Self::near) and a time at which the bodies are not certainly apart, if from here
-    /// it seemed to be `next`: Newton's method from the end that is nearer to contact; where that leaves the interval,
-    /// the secant; and where neither comes nearer, or a distance is not known, the middle. `None` where nothing moves
-    /// in between by more than rounding: as at the start, which is known better than all that comes after it.
+    /// The time to look at between [`near`](Self::near) and a time at which the bodies are not certainly apart, given
+    /// the time `next` that Newton's method leads to from `near`. It is that of Newton's method from the end that is
+    /// nearer to contact; if that leaves the interval, that of the secant; and if neither makes progress, or a distance
+    /// is not known, the middle. `None` if nothing moves in between by more than rounding, as may happen at the start,
+    /// where the bodies' places are exact and later ones are not.
     fn between(&self, next: V::Scalar, beyond: &Instant<V>) -> Option<V::Scalar> {
         let Instant { time, distance, error, .. } = self.near;
         let aim = error * Scalar::from_f64(AIM);
         let (width, way) = (beyond.time - time, distance - aim);
         let is_inside = |next: &V::Scalar| *next > time && *next < beyond.time;
-        // Where they overlap, the speed is that of support points, which need not be the closest ones: two distances
-        // tell it better.
+        // If they overlap, the closing speed is that of support points, which need not be the closest points. Two
+        // distances tell it better.
         let closing = |farther: Instant<V>| (beyond.distance - farther.distance) / (farther.time - beyond.time);
         let from_beyond = beyond.time + (beyond.distance - aim) / self.farther.map_or(beyond.closing, closing);
         let secant = time + width * (way / (distance - beyond.distance));
@@ -71,15 +72,15 @@ impl<V: Vector> Search<'_, V> {
         })
     }
 
-    /// The time after which the bodies have come nearer by `way`, as far as the last two looks predict it.
+    /// The time that the bodies take to come nearer by `way`, as far as the last two looks predict it.
     ///
     /// With the closing speeds `w₀` and `w` at the beginning and the end of the last step `h`, in which they came
     /// nearer by `m·h`, the only cubic that agrees is `w·s + c·s²/2 + j·s³/6` with
     ///
     /// > j·h² = 12·((w₀ + w)/2 − m),   c·h = w − w₀ + j·h²/2.
     ///
-    /// A small part of what is due to `j` is left to go, so that the next step starts on this side of the contact.
-    /// Where the last step does not tell what comes, the growth `c` is the most that it may be.
+    /// A small part of the change that is due to `j` is left undone, so that the next step starts on this side of the
+    /// contact. If the last step does not predict the next one, `c` is the most that it may be.
     fn newton(&self, way: V::Scalar) -> V::Scalar {
         let from_f64 = V::Scalar::from_f64;
         let (two, w) = (from_f64(2.0), self.near.closing);
@@ -102,12 +103,12 @@ impl<V: Vector> Search<'_, V> {
             let come = (w + growth * from_f64(0.5) + bend * from_f64(1.0 / 6.0)) * s;
             s += (way - come) / (w + growth + bend * from_f64(0.5));
         }
-        // NaN is not near.
+        // If `s` is NaN, the root of the parabola is taken.
         if (s - after).abs() < after * from_f64(0.5) { s } else { after }
     }
 
-    /// The distance at a time that would be enough to prove the rest of the motion along the present normal; infinity
-    /// elsewhere.
+    /// For the end of the motion, the distance there that would be enough to prove the rest of it along the present
+    /// normal. Infinity for other times.
     pub(super) fn enough_at(&self, time: V::Scalar) -> V::Scalar {
         if time < self.options.max_time {
             return V::Scalar::infinity();

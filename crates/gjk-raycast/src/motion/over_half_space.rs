@@ -102,16 +102,16 @@ struct OverHalfSpace<'s, V: Vector> {
     plane: Plane<V>,
     /// The support points computed.
     iterations: Cell<usize>,
-    /// The hint of the last time, which mostly fits again.
+    /// The hint of the last time, since it mostly fits again.
     hint: Cell<Hint>,
 }
 
 impl<V: Vector> OverHalfSpace<'_, V> {
-    /// The height of the body's lowest point over the half-space at a time, less the target distance, and the point of
-    /// its core, in the world.
+    /// The height of the body's lowest point over the half-space at a time, less the target distance, and the lowest
+    /// point of its core in the world.
     ///
-    /// The height is that of the sum of the origin, the displacement by the motion, and the support point, so that the
-    /// height of a body far along the plane is as accurate as any other.
+    /// The height is computed from the origin, the displacement and the support point, each by itself, so that it is as
+    /// exact for a body far along the plane as for any other.
     fn lowest(&self, time: V::Scalar) -> (Level<V::Scalar>, V) {
         let (origin, radius) = (self.body.core.origin, self.body.core.radius);
         let place = self.body.place(time);
@@ -146,7 +146,7 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
         let (height, core_point) = self.lowest(time);
         let unit = self.plane.unit;
         let point_a = core_point - unit * self.body.core.radius;
-        // The point below, or of a body that is in the half-space its own lowest point.
+        // The point of the plane below it, or, if the body is in the half-space, its own lowest point.
         let point = point_a - unit * height.value.max(-self.margin);
         Instant {
             time,
@@ -161,13 +161,13 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
         }
     }
 
-    /// The normal is that of the plane, whatever the argument.
+    /// The normal is always that of the plane, whatever the argument is.
     fn level(&self, time: V::Scalar, _normal: V) -> (V::Scalar, V::Scalar) {
         let (Level { value, error }, _) = self.lowest(time);
         (value, error)
     }
 
-    /// The plane does not turn, whatever rounding has done to a normal.
+    /// The plane does not turn, whatever rounding has made of the normals.
     fn acceleration_along(&self, _plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar {
         let normal = self.plane.normal();
         self.plane.per_length(self.body.acceleration_along(TurningPlane { from: normal, to: normal }, interval))
@@ -180,12 +180,12 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
         let reach = ball.radius + self.body.core.radius;
         let height = self.plane.height([ball.start], zero, reach).least();
         let sinking = self.plane.sinking([ball.velocity]).most();
-        // For ever, if it does not sink at all.
+        // If it does not sink, it stays apart for ever.
         let way = if sinking <= zero { zero } else { sinking * (interval[1] - interval[0]) };
-        // What the ball itself is rounded by.
+        // A bound on the rounding of the ball.
         let measure = reach + length_bound(ball.start) + way;
         let margin = measure * V::Scalar::from_f64(32.0) * V::Scalar::EPSILON + lost_to_underflow(measure);
-        // NaN is not apart.
+        // If a number is NaN, the bodies are not known to be apart.
         (height - way > margin).then_some(self.plane.unit)
     }
 

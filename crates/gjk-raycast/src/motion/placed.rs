@@ -1,4 +1,4 @@
-//! Shapes somewhere on their way, two moving bodies where they are at a time, and the corners that are closest there.
+//! A shape at a place on its way, two moving bodies at one time, and the corners that are closest at that time.
 
 use core::cell::Cell;
 
@@ -9,19 +9,20 @@ use crate::separation::across_corners;
 use crate::shape::Shape;
 use crate::simplex::{MAX_POINTS, project};
 
-/// A shape turned by a rotation, whose origin is put where one wants it, and whose radius may be grown.
+/// A shape turned by a rotation, with its origin put at a given point, and with a radius that may be larger than its
+/// own.
 pub(crate) struct Moved<'s, V: Vector> {
     shape: Shape<'s, V>,
     /// The rotation about the origin; `None` for a shape as it is.
     rotation: Option<V::Matrix>,
     core: Core<V>,
-    /// What moving the shape may have added to the error of its points, as a length.
+    /// A bound on the length of the error that moving the shape adds to its points.
     error: V::Scalar,
 }
 
 impl<'s, V: Vector> Moved<'s, V> {
-    /// The shape with the given core, which may have another origin and another radius than its own, turned by
-    /// `rotation` about the origin. Moving it took its points where they should be but for `error`.
+    /// The shape with the given core, turned by `rotation` about the origin. The core may have another origin and
+    /// another radius than that of the shape. The place that it was moved to is wrong by no more than `error`.
     #[inline(always)]
     pub(crate) fn new(shape: Shape<'s, V>, core: Core<V>, rotation: Option<V::Matrix>, error: V::Scalar) -> Self {
         let Some(matrix) = rotation else {
@@ -33,19 +34,19 @@ impl<'s, V: Vector> Moved<'s, V> {
             CoreKind::Segment { middle, half } => CoreKind::Segment { middle: matrix * middle, half: matrix * half },
             kind => kind,
         };
-        // The length of an error stays. The product with the matrix is wrong by at most three ε of the extent, and so
-        // may be the support value along a direction that is turned.
+        // A rotation keeps the length of an error. Its product with a point is wrong by no more than three ε of the
+        // extent, and the support value along a turned direction by as much again.
         let error = error + V::Scalar::from_f64(6.0) * Scalar::EPSILON * core.extent;
         Self { shape, rotation, core: Core { kind, error: core.error + error, ..core }, error }
     }
 
-    /// A vector of the shape as it is turned.
+    /// A vector of the shape, turned with it.
     #[inline(always)]
     pub(super) fn turned(&self, vector: V) -> V {
         self.rotation.map_or(vector, |rotation| rotation * vector)
     }
 
-    /// A vector of the turned shape as it was.
+    /// A vector of the turned shape, turned back.
     #[inline(always)]
     pub(super) fn before(&self, vector: V) -> V {
         self.rotation.map_or(vector, |rotation| rotation.transpose_mul(vector))
@@ -91,7 +92,7 @@ impl<V: Vector> SupportMap for Moved<'_, V> {
         Some(Parallelotope { center: self.turned(center), half_edges: half_edges.map(|edge| self.turned(edge)) })
     }
 
-    /// Of a shape that is turned the coordinates are no better known than the length.
+    /// If the shape is turned, the error of each coordinate may be as large as the length of the error.
     fn rounding(&self) -> Rounding<V> {
         if self.rotation.is_some() {
             let Core { extent, error, .. } = self.core;
@@ -105,7 +106,7 @@ impl<V: Vector> SupportMap for Moved<'_, V> {
 /// Two bodies at one time; `b` has its origin at zero, which is `place` in the world.
 pub(super) struct Placed<'s, V: Vector> {
     pub(super) time: V::Scalar,
-    /// The shapes where they were, and what was found of them at the last time, which is mostly found again.
+    /// The shapes at time 0, and the hints of the last time, which mostly fit again.
     pub(super) shapes: &'s dyn Shapes<Vector = V>,
     pub(super) hints: &'s Cell<[Hint; 2]>,
     pub(super) a: Moved<'s, V>,
@@ -162,9 +163,9 @@ pub(super) struct Corners<V> {
     len: usize,
 }
 
-/// Corners where the bodies are at a time: the face of them that has their point closest to zero.
+/// The face of some corners, placed at one time, on which the point of their hull closest to zero lies.
 pub(super) struct CornerFace<V: Vector> {
-    /// Those of the difference; zero beyond the last.
+    /// The corners of the difference; zero after the last.
     pub(super) points: [V; MAX_POINTS],
     pairs: [PointPair<V>; MAX_POINTS],
     pub(super) weights: [V::Scalar; MAX_POINTS],
@@ -174,12 +175,12 @@ pub(super) struct CornerFace<V: Vector> {
 }
 
 impl<V: Vector> Corners<V> {
-    /// No corner.
+    /// No corners.
     pub(super) fn none() -> Self {
         Self { pairs: [PointPair::default(); MAX_POINTS], len: 0 }
     }
 
-    /// Takes the given corners, where the bodies are at a time, instead.
+    /// Replaces the corners by the given ones, which are those of the bodies at one time.
     pub(super) fn keep(&mut self, corners: impl Iterator<Item = PointPair<V>>, Placed { a, b, .. }: &Placed<'_, V>) {
         self.len = 0;
         for (to, corner) in self.pairs.iter_mut().zip(corners) {
@@ -188,7 +189,7 @@ impl<V: Vector> Corners<V> {
         }
     }
 
-    /// Where they are at a time, and the corners of the difference that they make.
+    /// The corners at a time, and those of the difference that they make.
     #[inline(always)]
     pub(super) fn at(&self, Placed { a, b, offset, .. }: &Placed<'_, V>) -> CornerFace<V> {
         let len = self.len.min(MAX_POINTS);
@@ -200,8 +201,9 @@ impl<V: Vector> Corners<V> {
         CornerFace { points, pairs, weights: [Scalar::ZERO; MAX_POINTS], len, v: V::ZERO }
     }
 
-    /// The face closest to zero, where the bodies are at a time. Corners that leave the point closest to zero of their
-    /// hull outside are dropped, which finds a face that is near if not the nearest; `None` where no face is found.
+    /// The face closest to zero, with the bodies where they are at a time. Zero is projected onto the affine hull of
+    /// the corners, and corners with a weight that is not positive are dropped, until all weights are positive. This
+    /// finds a face that is near, but not always the nearest. `None` if no corner is left.
     #[inline(always)]
     pub(super) fn closest_face(&self, placed: &Placed<'_, V>) -> Option<CornerFace<V>> {
         let CornerFace { mut points, mut pairs, mut len, .. } = self.at(placed);
@@ -212,7 +214,7 @@ impl<V: Vector> Corners<V> {
             if (0..len).all(is_inside) {
                 return Some(CornerFace { points, pairs, weights, len, v: -foot.across });
             }
-            // One weight at least is not positive, or NaN.
+            // At least one weight is not positive, or is NaN.
             let before = len;
             len = 0;
             for i in (0..before).filter(|&i| is_inside(i)) {
@@ -225,19 +227,19 @@ impl<V: Vector> Corners<V> {
 }
 
 impl<V: Vector> CornerFace<V> {
-    /// The points of both cores that its closest point is made of.
+    /// The points of both cores whose difference is its closest point.
     #[inline(always)]
     pub(super) fn closest_points(&self) -> PointPair<V> {
         self.corners().zip(&self.weights).fold(PointPair::default(), |sum, ((_, pair), &weight)| sum.plus(pair, weight))
     }
 
-    /// The corners, and what they are made of.
+    /// The corners of the difference, and the corners of both cores that each is made of.
     #[inline(always)]
     pub(super) fn corners(&self) -> impl Iterator<Item = (V, PointPair<V>)> + '_ {
         self.points.iter().copied().zip(self.pairs.iter().copied()).take(self.len)
     }
 
-    /// The unit vector across the plane that it spans, towards `axis`.
+    /// The unit vector across the plane that it spans, on the side of `axis`.
     pub(super) fn unit_across(&self, axis: V) -> Option<V> {
         let (normal, _) = if self.len == V::DIM { across_corners(&self.points) } else { return None };
         let unit = normal.unit()?;

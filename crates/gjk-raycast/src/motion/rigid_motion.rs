@@ -101,8 +101,8 @@ impl<V: Vector> RigidMotion<V> {
         if angle == V::Scalar::ZERO {
             return straight;
         }
-        // With a = ω/|ω| and p the way of the origin across the axis: the point of the axis nearest to the middle of p
-        // is off by cot(θ/2)·(a × p)/2, and what is left of the way is along the axis.
+        // Let a = ω/|ω|, and let p be the part of the origin's way that is perpendicular to the axis. The axis passes
+        // by the middle of p at the distance cot(θ/2)·(a × p)/2. The rest of the way is along the axis.
         let (half, axis) = (V::Scalar::from_f64(0.5), w * moved / angle);
         let across = -(w * axis) / angle;
         let center = from.translation + (across + axis * tan(angle * half).recip()) * half;
@@ -121,8 +121,9 @@ impl<V: Vector> RigidMotion<V> {
     ///
     /// > 2·r·ẋ + n·ẍ = 2·r·v + y·W(Wn − 2r),
     ///
-    /// and the last vector is across ω, along which `y` reaches no farther than from the axis to the far side of the
-    /// ball. Of a normal that turns with the body, `r = Wn`, no more is left than of one that does not turn.
+    /// and the last vector is perpendicular to `ω`. Along such a vector `y` is no longer than the distance from the
+    /// axis to the far side of the ball. For a normal that turns with the body, which means `r = Wn`, this is no more
+    /// than for a normal that does not turn.
     #[inline(always)]
     pub(super) fn acceleration_within(
         &self,
@@ -167,13 +168,14 @@ impl<V: Vector> RigidMotion<V> {
 
 /// A bound on the error of a [turn](AngularVelocity::turn) as an operator, its product with a vector included.
 ///
-/// It is relative to the root of the sum of the squared entries of `R − 1`, which is the trace of `(R − 1)ᵀ(R − 1) = (1
-/// − R) + (1 − R)ᵀ`. Nothing cancels there, as no entry of the diagonal of `1 − R` is negative.
+/// It is relative to the root of the sum of the squared entries of `R − 1`. That sum is the trace of
+/// `(R − 1)ᵀ(R − 1) = (1 − R) + (1 − R)ᵀ`, in which nothing cancels, since no entry on the diagonal of `1 − R` is
+/// negative.
 #[inline(always)]
 pub(super) fn turn_error<V: Vector>(turn: &V::Matrix) -> V::Scalar {
     let trace = (0..V::DIM).fold(V::Scalar::ZERO, |sum, j| sum - turn.col(j).get(j));
     let squared = trace + trace;
-    // Four more for the product with a vector.
+    // The product with a vector loses four more.
     let units = <V::AngularVelocity as AngularVelocity<V>>::TURN_ERROR + 4.0;
     squared.sqrt() * V::Scalar::EPSILON * V::Scalar::from_f64(units)
 }
@@ -187,7 +189,8 @@ fn longer<V: Vector>(vectors: [V; 2]) -> V::Scalar {
     if squared > in_range { squared.sqrt() } else { hardly_bent(vectors) }
 }
 
-/// The length of the longer of two vectors whose squares underflow, with what products of such numbers may have lost.
+/// The length of the longer of two vectors whose squares underflow, plus a bound on what products of such numbers may
+/// have lost.
 #[cold]
 #[inline(never)]
 fn hardly_bent<V: Vector>([from, to]: [V; 2]) -> V::Scalar {
@@ -224,8 +227,9 @@ impl<V: Vector> Trajectory for RigidMotion<V> {
         self.acceleration_within(self.reach(ball), plane, interval)
     }
 
-    /// About the centre, which moves at constant velocity, or about the middle of the ball, which leaves its chord by
-    /// `1 − cos(ωs/2) ≤ (ωs)²/8` of its distance from the axis, where that is less.
+    /// The moving ball is about the centre of the motion, which moves at constant velocity, or about the middle of the
+    /// given ball, whichever makes it smaller. The middle leaves the chord of its path by no more than its distance
+    /// from the axis times `1 − cos(ωs/2) ≤ (ωs)²/8`.
     fn moving_ball(&self, ball: BoundingSphere<V>, [from, to]: [V::Scalar; 2]) -> MovingBall<V> {
         let arm = ball.center - self.center;
         let about = |arm| {

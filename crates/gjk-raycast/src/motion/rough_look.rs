@@ -1,4 +1,4 @@
-//! A look at two moving bodies that are well apart, of which the search needs to know their distance only roughly.
+//! What is known of two moving bodies at one time, if they are well apart and a rough distance is enough.
 
 use convex_support::{Scalar, Vector};
 
@@ -11,9 +11,9 @@ use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk};
 use crate::observer::Observer;
 use crate::unit::is_moderate;
 
-/// How wide a bracket on the distance of bodies that are well apart may stay, relative to it: where they are looked at
-/// next hardly depends on it, and their gap is proved however wide it is. A narrower one takes more support points, a
-/// wider one more looks.
+/// The width, relative to the distance, that the bracket of a rough distance may have. The time to look at next hardly
+/// depends on it, and the gap is proved however wide it is. A narrower bracket takes more support points, and a wider
+/// one more looks.
 const ROUGH: f64 = 0.2;
 
 /// Points in another unit.
@@ -22,7 +22,7 @@ pub(super) fn times<V: Vector>(points: PointPair<V>, factor: V::Scalar) -> Point
 }
 
 impl<V: Vector> MovingPair<'_, V> {
-    /// The pair at a time, by GJK; `None` if the bodies are nearly in contact, or overlap by an unknown depth.
+    /// The bodies at a time, by GJK; `None` if they are nearly in contact, or overlap by an unknown depth.
     ///
     /// The search begins with the face that was closest at the last time. Mostly it still is, and one support point
     /// ends the search. If the bodies overlap by more than rounding, the best plane known tells roughly how deep, which
@@ -32,7 +32,7 @@ impl<V: Vector> MovingPair<'_, V> {
         let pair = &mut Pair::new(placed, cores.each_ref());
         let size = pair.size(placed.offset);
         let kept = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
-        // If the cores have passed through one another, the vector to it is turned round.
+        // If the cores have passed through one another, the vector to the face points the other way.
         let face = kept.filter(|face| face.v.dot(axis) > Scalar::ZERO && face.v.length() > pair.radius());
         let frame = Frame::new(pair, placed.offset, size);
         let Frame { scale, per_unit, radius, error, .. } = frame;
@@ -51,10 +51,10 @@ impl<V: Vector> MovingPair<'_, V> {
         let (distance, near) = (state.lower - radius, error * Scalar::from_f64(NEAR));
         let unit = state.axis.unit()?;
         let known = [state.lower * scale - pair.radius(), error * scale];
-        // NaN is neither.
+        // If the distance is NaN, neither holds.
         if end == gjk::End::Separated && distance > near {
             state.ensure_measured();
-            // Of curved bodies the corners would be others.
+            // On a curved body other points will be the closest ones.
             if !pair.is_curved() {
                 let corners = state.simplex.weighted().map(|(_, corner)| times(corner, scale));
                 self.closest.borrow_mut().keep(corners, placed);

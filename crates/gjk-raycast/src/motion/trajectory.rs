@@ -117,7 +117,7 @@ impl<V: Vector> Displacement<V> {
         self.turn * (point - self.pivot)
     }
 
-    /// How far that point may be from where it should be, but for the rounding of the sum.
+    /// A bound on the error of [`of`](Self::of) at a point, apart from the rounding of the sum.
     fn error_of(&self, point: V) -> V::Scalar {
         self.shift_error + self.turn_error * length_bound(point - self.pivot)
     }
