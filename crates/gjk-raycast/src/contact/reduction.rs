@@ -56,8 +56,11 @@ pub(super) fn reduced<S: Scalar>(
 fn spanning<S: Scalar>(polygon: &[Candidate<S>], margin: f64, rank: impl Fn(usize) -> Rank) -> [usize; 4] {
     let count = polygon.len();
     // Twice around.
-    let at: SmallVec<[Across<S>; 2 * ROOM]> = polygon.iter().chain(polygon).map(|corner| corner.at).collect();
-    let ranks: SmallVec<[Rank; ROOM]> = (0..count).map(rank).collect();
+    let mut at: SmallVec<[Across<S>; 2 * ROOM]> = SmallVec::new();
+    at.extend(polygon.iter().chain(polygon).map(|corner| corner.at));
+    let mut ranks: SmallVec<[Rank; ROOM]> = SmallVec::new();
+    ranks.extend((0..count).map(rank));
+    let (at, ranks) = (at.as_slice(), ranks.as_slice());
     let twice = |i: usize, j: usize, k: usize| cross(way(at[i], at[j]), way(at[i], at[k]));
     let lost = |most: S| most * S::from_f64(margin);
     // Only diagonals that may still be good enough are kept, for which there is room.

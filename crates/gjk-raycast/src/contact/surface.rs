@@ -1,7 +1,7 @@
 //! The height of the surface of a shape over a place in the plane of contact.
 
 use convex_support::numerics::twofold::dot_minus;
-use convex_support::{Core, Feature, Hint, Scalar, SupportMap, Vector};
+use convex_support::{CertainCrossing, Core, Feature, Hint, LineQuery, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
@@ -25,6 +25,8 @@ pub(crate) trait Surface<V: Vector> {
     fn feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>);
     /// The point of the core farthest along a direction.
     fn farthest(&self, direction: V) -> V;
+    /// Where a line certainly enters the shape.
+    fn crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>>;
 }
 
 impl<S: SupportMap + ?Sized> Surface<S::Vector> for &S {
@@ -38,6 +40,10 @@ impl<S: SupportMap + ?Sized> Surface<S::Vector> for &S {
 
     fn farthest(&self, direction: S::Vector) -> S::Vector {
         self.core_support(direction, &mut Hint::new())
+    }
+
+    fn crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
+        self.certain_crossing(line)
     }
 }
 
@@ -139,8 +145,12 @@ impl<'s, V: Vector> Side<'s, V> {
         let seen = |(&point, &id): (&V, &u32)| self.plane.corner(swept + point, id);
         self.known.extend(feature.points().iter().zip(feature.ids()).map(seen));
         let known = &self.known;
-        let is_shown = |low: &&Corner<_>| known.len() < 3 || !known.iter().any(|high| is_hidden(low, high, self.noise));
-        let mut shown: SmallVec<[_; 16]> = known.iter().filter(is_shown).copied().collect();
+        let mut shown: SmallVec<[_; 16]> = SmallVec::new();
+        for low in known {
+            if known.len() < 3 || !known.iter().any(|high| is_hidden(low, high, self.noise)) {
+                shown.push(*low);
+            }
+        }
         wrap(&mut shown, self.noise, &mut self.outline.corners);
     }
 
@@ -188,7 +198,7 @@ impl<'s, V: Vector> Side<'s, V> {
     }
 
     /// The level of the surface at a place within the outline, and by how much it may be too little, found by at most
-    /// so many support points.
+    /// so many support points, unless the shape has a closed form.
     ///
     /// Points of the shape around the place, first those of the outline, are in the shape with all points between them.
     /// The plane through them is moved out until it supports the shape: the surface is between the two planes. If they
@@ -205,6 +215,14 @@ impl<'s, V: Vector> Side<'s, V> {
         let is_aside = self.is_aside(at);
         if let (Some(tangent), false) = (&self.flat, is_aside) {
             return Some(Level { value: tangent.level(at), error: self.rounding(tangent) });
+        }
+        let line = LineQuery::new(self.plane.point(at, V::Scalar::ZERO), -self.plane.normal);
+        match self.surface?.crossing(line.within(self.noise)) {
+            Some(CertainCrossing::Misses(_)) => return None,
+            Some(CertainCrossing::Enters { entry, bounds, .. }) => {
+                return Some(Level { value: -entry, error: entry - bounds[0] });
+            }
+            None => {}
         }
         let mut around = if is_aside { self.beside(at)? } else { self.around(at) };
         let (mut value, mut most, mut lost) = (around[0].height, self.top, self.noise);
