@@ -107,7 +107,7 @@ fn between<V: Vector>(
     // The closest points may be shifted against each other by the uncertainty of the normal.
     let levels = [level, level + (answer.upper - answer.lower)];
     let side = |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, levels);
-    let sides = &mut [side(a, &core_a, -normal), side(b, &core_b, normal)];
+    let sides = [&mut side(a, &core_a, -normal), &mut side(b, &core_b, normal)];
     Facing { sides, reach, last }.contact(answer, [level, level])
 }
 
@@ -123,8 +123,8 @@ compiled_once! {
         let plane = |normal| ContactPlane { normal, across, origin };
         let core = shape.parts();
         let reach = Reach::new(answer, within, core.size());
-        let sides = &mut
-            [Side::new(shape, &core, plane(-normal), [-answer.signed_distance, -answer.lower]), Side::flat(plane(normal))];
+        let heights = [-answer.signed_distance, -answer.lower];
+        let sides = [&mut Side::new(shape, &core, plane(-normal), heights), &mut Side::flat(plane(normal))];
         let levels = [-answer.signed_distance, V::Scalar::ZERO];
         Facing { sides, reach, last }.contact(answer, levels)
     }
@@ -162,7 +162,7 @@ fn most<V: Vector>() -> usize {
 
 /// Both shapes, each in the frame of the other's contact plane.
 struct Facing<'s, V: Vector> {
-    sides: &'s mut [Side<'s, V>; 2],
+    sides: [&'s mut Side<'s, V>; 2],
     reach: Reach<V::Scalar>,
     last: &'s [ContactPoint<V>],
 }
@@ -195,7 +195,7 @@ impl<V: Vector> Facing<'_, V> {
         if a < 2 || b == 1 {
             return;
         }
-        self.sides.iter_mut().for_each(Side::flatten);
+        self.sides.iter_mut().for_each(|side| side.flatten());
         let [of_a, of_b] = [&self.sides[0], &self.sides[1]];
         // A segment is clipped by a polygon.
         let is_swapped = a > b && b > 0;
@@ -236,7 +236,7 @@ impl<V: Vector> Facing<'_, V> {
         if candidate.error.is_finite() {
             return Some(candidate);
         }
-        let [of_a, of_b] = &mut *self.sides;
+        let [of_a, of_b] = &mut self.sides;
         let at = candidate.at;
         // Mostly one support point of each proves that they are farther apart.
         let most = if limit.is_finite() { of_b.level(at, -limit - of_a.top, 1)?.most() } else { limit };
@@ -285,7 +285,7 @@ impl<V: Vector> Facing<'_, V> {
             [from, to] => ContactPart::Edge(from.id, to.id),
             _ => ContactPart::Face,
         };
-        let [a, b] = &*self.sides;
+        let [a, b] = &self.sides;
         let whole = [part(a), part(b)].map(ContactPart::code);
         let codes = candidates.iter().find(|c| squared(c) <= near).map_or(whole, |c| c.codes);
         let zero = V::Scalar::ZERO;

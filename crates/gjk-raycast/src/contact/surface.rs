@@ -216,13 +216,16 @@ impl<'s, V: Vector> Side<'s, V> {
         if let (Some(tangent), false) = (&self.flat, is_aside) {
             return Some(Level { value: tangent.level(at), error: self.rounding(tangent) });
         }
+        // A side so steep is along the normal to rounding, and its position is unknown.
+        let noise = self.noise;
+        let is_known = |error| error * (V::Scalar::EPSILON.sqrt() * V::Scalar::from_f64(16.0)) <= noise;
         let line = LineQuery::new(self.plane.point(at, V::Scalar::ZERO), -self.plane.normal);
-        match self.surface?.crossing(line.within(self.noise)) {
+        match self.surface?.crossing(line.within(noise)) {
             Some(CertainCrossing::Misses(_)) => return None,
-            Some(CertainCrossing::Enters { entry, bounds, .. }) => {
+            Some(CertainCrossing::Enters { entry, bounds, .. }) if is_known(entry - bounds[0]) => {
                 return Some(Level { value: -entry, error: entry - bounds[0] });
             }
-            None => {}
+            _ => {}
         }
         let mut around = if is_aside { self.beside(at)? } else { self.around(at) };
         let (mut value, mut most, mut lost) = (around[0].height, self.top, self.noise);
@@ -262,9 +265,7 @@ impl<'s, V: Vector> Side<'s, V> {
                 break;
             }
         }
-        // So steep a side is along the normal to rounding, and its position is unknown.
-        let is_known = lost * (V::Scalar::EPSILON.sqrt() * V::Scalar::from_f64(16.0)) <= self.noise;
-        is_known.then(|| Level { value, error: (most - value).max(V::Scalar::ZERO) + lost })
+        is_known(lost).then(|| Level { value, error: (most - value).max(V::Scalar::ZERO) + lost })
     }
 
     /// Whether a place is beside an outline that is a segment, which happens if it is nearly parallel to the other
@@ -379,7 +380,7 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
         let allowed = spread(e) * noise;
         (cross(e, to), allowed, dot(e, to) >= -allowed)
     };
-    let mut best: Option<(S, Corners<S>)> = None;
+    let mut best: Option<Corners<S>> = None;
     for i in 0..3 {
         let (p, q) = (around[i], around[(i + 1) % 3]);
         let ((left, allowed, ahead), (right, as_well, too)) = (side(&p), side(&q));
@@ -388,14 +389,13 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
         let is_known = cross(base, way(p.at, next.at)) > spread(base) * noise;
         if is_known && left >= -allowed && right <= as_well && (ahead || too) {
             let corners = SmallVec::from_buf([p, q, next]);
-            let level = between(&corners, at);
             // At a corner there are two planes, and the one without that corner is higher.
-            if best.as_ref().is_none_or(|(known, _)| level > *known) {
-                best = Some((level, corners));
+            if best.as_ref().is_none_or(|known| between(&corners, at) > between(known, at)) {
+                best = Some(corners);
             }
         }
     }
-    let Some((_, corners)) = best else { return false };
+    let Some(corners) = best else { return false };
     *around = corners;
     true
 }
