@@ -216,7 +216,7 @@ impl<'s, V: Vector> Side<'s, V> {
         if let (Some(tangent), false) = (&self.flat, is_aside) {
             return Some(Level { value: tangent.level(at), error: self.rounding(tangent) });
         }
-        // A side so steep is along the normal to rounding, and its position is unknown.
+        // With a larger error a side is along the normal to rounding, and its position is unknown.
         let noise = self.noise;
         let is_known = |error| error * (V::Scalar::EPSILON.sqrt() * V::Scalar::from_f64(16.0)) <= noise;
         let line = LineQuery::new(self.plane.point(at, V::Scalar::ZERO), -self.plane.normal);
