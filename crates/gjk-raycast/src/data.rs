@@ -97,6 +97,6 @@ impl<'de, V: VectorData> Deserialize<'de> for Contact<V> {
         if !(1..=Self::MAX_POINTS).contains(&read.points.len()) {
             return Err(D::Error::invalid_length(read.points.len(), &"one to four points"));
         }
-        Ok(Self::new(read.normal, read.distance, &read.points))
+        Ok(Self::new(read.normal, read.distance, read.points))
     }
 }

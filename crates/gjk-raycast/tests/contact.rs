@@ -273,6 +273,7 @@ fn what_leans_keeps_the_corners_that_overlap() {
 fn bodies_at_rest_keep_their_points() {
     type Shape = Box<dyn SupportMap<Vector = DVec3>>;
     let cylinder = || Box::new(Cylinder::<DVec3>::new(0.5, 0.5).expect(VALID));
+    let cone = || Box::new(Cone::<DVec3>::new(0.5, 0.5).expect(VALID));
     let unit = || Box::new(cuboid::<DVec3>([0.5; 3]));
     let prism = |count: u32| {
         let corner =
@@ -287,12 +288,9 @@ fn bodies_at_rest_keep_their_points() {
         ("a cylinder on its like".into(), cylinder(), DQuat::IDENTITY, cylinder()),
         ("a cylinder on its side".into(), cylinder(), lying, unit()),
         ("a capsule on its side".into(), Box::new(capsule), lying, unit()),
-        (
-            "a cone on its like".into(),
-            Box::new(Cone::<DVec3>::new(0.5, 0.5).expect(VALID)),
-            DQuat::IDENTITY,
-            cylinder(),
-        ),
+        ("a cone on a floor".into(), cone(), DQuat::IDENTITY, Box::new(cuboid([5.0, 0.5, 5.0]))),
+        ("a cone on its like".into(), cone(), DQuat::IDENTITY, cylinder()),
+        ("a hull on its like".into(), Box::new(prism(7)), DQuat::from_rotation_y(0.2), Box::new(prism(9))),
     ];
     for yaw in [0.0, 0.1, 0.4, FRAC_PI_4, 1.3] {
         cases.push((format!("a box turned by {yaw}"), unit(), DQuat::from_rotation_y(yaw), unit()));

@@ -28,21 +28,25 @@ pub(crate) type ClippedCorners<S> = SmallVec<[Clipped<S>; ROOM]>;
 
 /// The overlap of two outlines by the method of Sutherland and Hodgman: the first is cut along each edge of the second.
 /// A segment is clipped by a polygon, and two parallel segments by each other. It is empty if there is none. An outline
-/// without corners is the whole plane.
-pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> ClippedCorners<S> {
-    let (mut own_corners, mut rest) = (corners_of(&own.corners), ClippedCorners::new());
-    let mut overlap = [&mut own_corners, &mut rest];
+/// without corners is the whole plane. Both lists are empty at first; they are large, and the overlap is one of them.
+pub(crate) fn clip<'l, S: Scalar>(
+    own: &Outline<S>,
+    other: &Outline<S>,
+    [overlap, rest]: &'l mut [ClippedCorners<S>; 2],
+) -> &'l [Clipped<S>] {
+    overlap.extend(corners_of(&own.corners));
+    let mut overlap = [overlap, rest];
     let count = other.corners.len();
     if count == 2 {
         let [from, to] = [other.corners[0], other.corners[1]];
         let e = way(from.at, to.at);
         let across = way(own.corners[0].at, own.corners[own.corners.len() - 1].at);
         if own.corners.len() > 2 || !are_parallel(e, across) {
-            return SmallVec::new();
+            return &[];
         }
         cut(&mut overlap, 0, ContactPart::Vertex(from.id), |at| dot(way(from.at, at), e), other);
         cut(&mut overlap, 1, ContactPart::Vertex(to.id), |at| dot(way(at, to.at), e), other);
-        return SmallVec::from_slice(overlap[0]);
+        return overlap[0];
     }
     for i in 0..count {
         let [from, to] = [other.corners[i], other.corners[(i + 1) % count]];
@@ -50,7 +54,7 @@ pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> ClippedCo
         let part = ContactPart::Edge(from.id, to.id);
         cut(&mut overlap, i, part, |at| cross(e, way(from.at, at)), other);
     }
-    SmallVec::from_slice(overlap[0])
+    overlap[0]
 }
 
 /// Whether segments are parallel to within about a degree.
@@ -59,14 +63,13 @@ fn are_parallel<S: Scalar>(a: Across<S>, b: Across<S>) -> bool {
     turn * turn <= S::from_f64(3e-4) * dot(a, a) * dot(b, b)
 }
 
-fn corners_of<S: Scalar>(corners: &[Corner<S>]) -> ClippedCorners<S> {
-    let next = |i: usize| corners[(i + 1) % corners.len()].id;
-    let corner = |(i, c): (usize, &Corner<S>)| Clipped {
+fn corners_of<S: Scalar>(corners: &[Corner<S>]) -> impl Iterator<Item = Clipped<S>> {
+    let corner = |(c, next): (&Corner<S>, &Corner<S>)| Clipped {
         at: c.at,
         parts: [ContactPart::Vertex(c.id), ContactPart::Face],
-        edge: Edge::Own(c.id, next(i)),
+        edge: Edge::Own(c.id, next.id),
     };
-    corners.iter().enumerate().map(corner).collect()
+    corners.iter().zip(corners.iter().cycle().skip(1)).map(corner)
 }
 
 /// Keeps the part of a polygon or a segment, the first of two lists, in which `inside` is not negative. The cut is
@@ -79,6 +82,7 @@ fn cut<S: Scalar>(
     other: &Outline<S>,
 ) {
     let [polygon, kept] = lists;
+    let polygon = polygon.as_slice();
     // Most edges of a large face cut nothing.
     if polygon.iter().all(|corner| inside(corner.at) >= S::ZERO) {
         return;

@@ -4,7 +4,7 @@ use convex_support::{CoreKind, Scalar, ScalarOf, SupportMap, Vector, compiled_on
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
-use super::clip::{ClippedCorners, clip};
+use super::clip::{Clipped, ClippedCorners, clip};
 use super::outline::{ContactPart, ContactPlane, Outline, ROOM};
 use super::reduction::{Candidate, Rank, WORTHWHILE, reduced};
 use super::result::MAX_POINTS;
@@ -68,7 +68,7 @@ fn single<V: Vector>(answer: &SignedDistance<V>) -> Contact<V> {
     let &SignedDistance { point_a, point_b, signed_distance, lower, upper, .. } = answer;
     let (error, face) = (upper - lower, ContactPart::Face.code());
     let point = ContactPoint { point_a, point_b, signed_distance, error, feature_a: face, feature_b: face };
-    Contact::new(answer.normal, *answer, &[point])
+    Contact::new(answer.normal, *answer, [point])
 }
 
 compiled_once! {
@@ -107,7 +107,8 @@ fn between<V: Vector>(
     // The closest points may be shifted against each other by the uncertainty of the normal.
     let levels = [level, level + (answer.upper - answer.lower)];
     let side = |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, levels);
-    Facing { sides: [side(a, &core_a, -normal), side(b, &core_b, normal)], reach, last }.contact(answer, [level, level])
+    let sides = [&mut side(a, &core_a, -normal), &mut side(b, &core_b, normal)];
+    Facing { sides, reach, last }.contact(answer, [level, level])
 }
 
 compiled_once! {
@@ -122,8 +123,8 @@ compiled_once! {
         let plane = |normal| ContactPlane { normal, across, origin };
         let core = shape.parts();
         let reach = Reach::new(answer, within, core.size());
-        let sides =
-            [Side::new(shape, &core, plane(-normal), [-answer.signed_distance, -answer.lower]), Side::flat(plane(normal))];
+        let heights = [-answer.signed_distance, -answer.lower];
+        let sides = [&mut Side::new(shape, &core, plane(-normal), heights), &mut Side::flat(plane(normal))];
         let levels = [-answer.signed_distance, V::Scalar::ZERO];
         Facing { sides, reach, last }.contact(answer, levels)
     }
@@ -161,7 +162,7 @@ fn most<V: Vector>() -> usize {
 
 /// Both shapes, each in the frame of the other's contact plane.
 struct Facing<'s, V: Vector> {
-    sides: [Side<'s, V>; 2],
+    sides: [&'s mut Side<'s, V>; 2],
     reach: Reach<V::Scalar>,
     last: &'s [ContactPoint<V>],
 }
@@ -171,15 +172,15 @@ impl<V: Vector> Facing<'_, V> {
     /// to two; and the closest points, at these levels.
     fn contact(&mut self, answer: &SignedDistance<V>, levels: [V::Scalar; 2]) -> Contact<V> {
         self.sides.iter_mut().for_each(|side| side.see(self.reach.slab));
-        let candidates = self.corners(answer.lower);
+        let mut candidates = Candidates::new();
+        self.add_corners(&mut candidates, answer.lower);
         let rank = |i: usize| -> Rank { (!self.is_known(candidates[i].codes), candidates[i].codes) };
         let chosen = reduced(&candidates, !self.last.is_empty(), rank);
         let limit = V::Scalar::infinity();
         let mut measured = |&i: &usize| self.measured(candidates[i], answer.lower, limit);
         let mut chosen: Chosen<_> = chosen.iter().filter_map(&mut measured).collect();
         self.add_closest(&mut chosen, &candidates, answer, levels);
-        let points: SmallVec<[_; MAX_POINTS]> = chosen.iter().map(|candidate| self.point(candidate, answer)).collect();
-        Contact::new(answer.normal, *answer, &points)
+        Contact::new(answer.normal, *answer, chosen.iter().map(|candidate| self.point(candidate, answer)))
     }
 
     /// Whether the last manifold had this point.
@@ -187,26 +188,26 @@ impl<V: Vector> Facing<'_, V> {
         self.last.iter().any(|point| [point.feature_a, point.feature_b] == codes)
     }
 
-    /// The corners of the overlap. None is deeper than the `deepest`.
-    fn corners(&mut self, deepest: V::Scalar) -> Candidates<V::Scalar> {
-        let mut candidates = Candidates::new();
+    /// Adds the corners of the overlap. None is deeper than the `deepest`.
+    fn add_corners(&mut self, candidates: &mut Candidates<V::Scalar>, deepest: V::Scalar) {
         let [a, b] = [0, 1].map(|i| self.sides[i].outline.corners.len());
         // An unbounded plane has no corners.
         if a < 2 || b == 1 {
-            return candidates;
+            return;
         }
-        self.sides.iter_mut().for_each(Side::flatten);
+        self.sides.iter_mut().for_each(|side| side.flatten());
         let [of_a, of_b] = [&self.sides[0], &self.sides[1]];
         // A segment is clipped by a polygon.
         let is_swapped = a > b && b > 0;
         let [own, other] = if is_swapped { [of_b, of_a] } else { [of_a, of_b] };
-        let overlap: ClippedCorners<V::Scalar> = clip(&own.outline, &other.outline);
+        let mut lists = [ClippedCorners::new(), ClippedCorners::new()];
+        let overlap = clip(&own.outline, &other.outline, &mut lists);
         for (i, corner) in overlap.iter().enumerate() {
             let [own, other] = corner.parts;
             let parts = self.settled(corner.at, if is_swapped { [other, own] } else { [own, other] });
             let is_crossing = matches!(parts, [ContactPart::Edge(..), ContactPart::Edge(..)]);
             let codes = parts.map(ContactPart::code);
-            if is_crossing && self.is_on_a_line(&overlap, i) || candidates.iter().any(|known| known.codes == codes) {
+            if is_crossing && self.is_on_a_line(overlap, i) || candidates.iter().any(|known| known.codes == codes) {
                 continue;
             }
             let levels = [0, 1].map(|i| self.sides[i].chord(corner.at));
@@ -222,7 +223,6 @@ impl<V: Vector> Facing<'_, V> {
                 candidates.extend(measured.filter(|measured| measured.gap() <= limit));
             }
         }
-        candidates
     }
 
     /// The candidate with the levels of the surfaces. `None` if these are farther apart than the `limit`, or unknown,
@@ -255,7 +255,7 @@ impl<V: Vector> Facing<'_, V> {
 
     /// Whether a corner of the overlap, where two edges cross, is on a line with its neighbours within the slack:
     /// rounding decides where two edges that lie on one another cross.
-    fn is_on_a_line(&self, overlap: &ClippedCorners<V::Scalar>, i: usize) -> bool {
+    fn is_on_a_line(&self, overlap: &[Clipped<V::Scalar>], i: usize) -> bool {
         let n = overlap.len();
         let at = |i: usize| overlap[i % n].at;
         let base = way(at(i + n - 1), at(i + 1));

@@ -56,9 +56,24 @@ pub(super) fn reduced<S: Scalar>(
 fn spanning<S: Scalar>(polygon: &[Candidate<S>], margin: f64, rank: impl Fn(usize) -> Rank) -> [usize; 4] {
     let count = polygon.len();
     // Twice around.
-    let at: SmallVec<[Across<S>; 2 * ROOM]> = polygon.iter().chain(polygon).map(|corner| corner.at).collect();
-    let ranks: SmallVec<[Rank; ROOM]> = (0..count).map(rank).collect();
+    let mut at: SmallVec<[Across<S>; 2 * ROOM]> = SmallVec::new();
+    at.extend(polygon.iter().chain(polygon).map(|corner| corner.at));
+    let mut ranks: SmallVec<[Rank; ROOM]> = SmallVec::new();
+    ranks.extend((0..count).map(rank));
+    let (at, ranks) = (at.as_slice(), ranks.as_slice());
     let twice = |i: usize, j: usize, k: usize| cross(way(at[i], at[j]), way(at[i], at[k]));
+    // The corner farthest from a diagonal, from one corner on and before another, and twice the area spanned with it.
+    let farthest = |from: usize, to: usize, mut corner: usize, end: usize| {
+        let mut most = twice(from, corner, to);
+        while corner + 1 < end {
+            let next = twice(from, corner + 1, to);
+            if !(next >= most) {
+                break;
+            }
+            (corner, most) = (corner + 1, next);
+        }
+        (corner, most)
+    };
     let lost = |most: S| most * S::from_f64(margin);
     // Only diagonals that may still be good enough are kept, for which there is room.
     let mut diagonals: SmallVec<[_; 4 * ROOM]> = SmallVec::new();
@@ -66,17 +81,9 @@ fn spanning<S: Scalar>(polygon: &[Candidate<S>], margin: f64, rank: impl Fn(usiz
     for i in 0..count - 2 {
         let (mut j, mut l) = (i + 1, i + 3);
         for k in i + 2..count.min(i + count - 1) {
-            let mut right = twice(i, j, k);
-            while j + 1 < k && twice(i, j + 1, k) >= right {
-                j += 1;
-                right = twice(i, j, k);
-            }
-            l = l.max(k + 1);
-            let mut left = twice(k, l, i);
-            while l + 1 < i + count && twice(k, l + 1, i) >= left {
-                l += 1;
-                left = twice(k, l, i);
-            }
+            let (right, left);
+            (j, right) = farthest(i, k, j, k);
+            (l, left) = farthest(k, i, l.max(k + 1), i + count);
             most = most.max(right + left);
             let least = most - lost(most);
             // NaN is kept.

@@ -26,11 +26,17 @@ impl<V: Vector> Contact<V> {
     pub(crate) const MAX_POINTS: usize = MAX_POINTS;
 
     /// With the first of the points, as many as a manifold has.
-    pub(crate) fn new(normal: V, distance: SignedDistance<V>, found: &[ContactPoint<V>]) -> Self {
-        let mut points = [ContactPoint::default(); MAX_POINTS];
-        let len = found.len().min(MAX_POINTS);
-        points[..len].copy_from_slice(&found[..len]);
-        Self { normal, distance, points, len }
+    pub(crate) fn new(
+        normal: V,
+        distance: SignedDistance<V>,
+        found: impl IntoIterator<Item = ContactPoint<V>>,
+    ) -> Self {
+        let mut contact = Self { normal, distance, points: [ContactPoint::default(); MAX_POINTS], len: 0 };
+        for (slot, point) in contact.points.iter_mut().zip(found) {
+            *slot = point;
+            contact.len += 1;
+        }
+        contact
     }
 
     /// The contact of the shapes in the other order: of `b` with `a`.

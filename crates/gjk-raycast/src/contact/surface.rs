@@ -1,7 +1,7 @@
 //! The height of the surface of a shape over a place in the plane of contact.
 
 use convex_support::numerics::twofold::dot_minus;
-use convex_support::{Core, Feature, Hint, Scalar, SupportMap, Vector};
+use convex_support::{CertainCrossing, Core, Feature, Hint, LineQuery, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
@@ -25,6 +25,8 @@ pub(crate) trait Surface<V: Vector> {
     fn feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>);
     /// The point of the core farthest along a direction.
     fn farthest(&self, direction: V) -> V;
+    /// Where a line certainly enters the shape.
+    fn crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>>;
 }
 
 impl<S: SupportMap + ?Sized> Surface<S::Vector> for &S {
@@ -38,6 +40,10 @@ impl<S: SupportMap + ?Sized> Surface<S::Vector> for &S {
 
     fn farthest(&self, direction: S::Vector) -> S::Vector {
         self.core_support(direction, &mut Hint::new())
+    }
+
+    fn crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
+        self.certain_crossing(line)
     }
 }
 
@@ -139,8 +145,12 @@ impl<'s, V: Vector> Side<'s, V> {
         let seen = |(&point, &id): (&V, &u32)| self.plane.corner(swept + point, id);
         self.known.extend(feature.points().iter().zip(feature.ids()).map(seen));
         let known = &self.known;
-        let is_shown = |low: &&Corner<_>| known.len() < 3 || !known.iter().any(|high| is_hidden(low, high, self.noise));
-        let mut shown: SmallVec<[_; 16]> = known.iter().filter(is_shown).copied().collect();
+        let mut shown: SmallVec<[_; 16]> = SmallVec::new();
+        for low in known {
+            if known.len() < 3 || !known.iter().any(|high| is_hidden(low, high, self.noise)) {
+                shown.push(*low);
+            }
+        }
         wrap(&mut shown, self.noise, &mut self.outline.corners);
     }
 
@@ -188,7 +198,7 @@ impl<'s, V: Vector> Side<'s, V> {
     }
 
     /// The level of the surface at a place within the outline, and by how much it may be too little, found by at most
-    /// so many support points.
+    /// so many support points, unless the shape has a closed form.
     ///
     /// Points of the shape around the place, first those of the outline, are in the shape with all points between them.
     /// The plane through them is moved out until it supports the shape: the surface is between the two planes. If they
@@ -205,6 +215,17 @@ impl<'s, V: Vector> Side<'s, V> {
         let is_aside = self.is_aside(at);
         if let (Some(tangent), false) = (&self.flat, is_aside) {
             return Some(Level { value: tangent.level(at), error: self.rounding(tangent) });
+        }
+        // With a larger error a side is along the normal to rounding, and its position is unknown.
+        let noise = self.noise;
+        let is_known = |error| error * (V::Scalar::EPSILON.sqrt() * V::Scalar::from_f64(16.0)) <= noise;
+        let line = LineQuery::new(self.plane.point(at, V::Scalar::ZERO), -self.plane.normal);
+        match self.surface?.crossing(line.within(noise)) {
+            Some(CertainCrossing::Misses(_)) => return None,
+            Some(CertainCrossing::Enters { entry, bounds, .. }) if is_known(entry - bounds[0]) => {
+                return Some(Level { value: -entry, error: entry - bounds[0] });
+            }
+            _ => {}
         }
         let mut around = if is_aside { self.beside(at)? } else { self.around(at) };
         let (mut value, mut most, mut lost) = (around[0].height, self.top, self.noise);
@@ -244,9 +265,7 @@ impl<'s, V: Vector> Side<'s, V> {
                 break;
             }
         }
-        // So steep a side is along the normal to rounding, and its position is unknown.
-        let is_known = lost * (V::Scalar::EPSILON.sqrt() * V::Scalar::from_f64(16.0)) <= self.noise;
-        is_known.then(|| Level { value, error: (most - value).max(V::Scalar::ZERO) + lost })
+        is_known(lost).then(|| Level { value, error: (most - value).max(V::Scalar::ZERO) + lost })
     }
 
     /// Whether a place is beside an outline that is a segment, which happens if it is nearly parallel to the other
@@ -361,7 +380,7 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
         let allowed = spread(e) * noise;
         (cross(e, to), allowed, dot(e, to) >= -allowed)
     };
-    let mut best: Option<(S, Corners<S>)> = None;
+    let mut best: Option<Corners<S>> = None;
     for i in 0..3 {
         let (p, q) = (around[i], around[(i + 1) % 3]);
         let ((left, allowed, ahead), (right, as_well, too)) = (side(&p), side(&q));
@@ -370,14 +389,13 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
         let is_known = cross(base, way(p.at, next.at)) > spread(base) * noise;
         if is_known && left >= -allowed && right <= as_well && (ahead || too) {
             let corners = SmallVec::from_buf([p, q, next]);
-            let level = between(&corners, at);
             // At a corner there are two planes, and the one without that corner is higher.
-            if best.as_ref().is_none_or(|(known, _)| level > *known) {
-                best = Some((level, corners));
+            if best.as_ref().is_none_or(|known| between(&corners, at) > between(known, at)) {
+                best = Some(corners);
             }
         }
     }
-    let Some((_, corners)) = best else { return false };
+    let Some(corners) = best else { return false };
     *around = corners;
     true
 }
