@@ -18,7 +18,7 @@ use super::placed::{CornerFace, Placed};
 use crate::body::{Pair, TracedSupport as _};
 use crate::gjk::rounding;
 use crate::separation::{Cores, Uncertainty, slack};
-use crate::simplex::{MAX_POINTS, project};
+use crate::simplex::{MAX_POINTS, project_rarely};
 use crate::unit::is_moderate;
 
 /// What points of both cores may be off a plane that they are said to be closest across, in errors.
@@ -138,7 +138,7 @@ impl<V: Vector> MovingPair<'_, V> {
             *point = cores.support(direction)?.point;
         }
         if radius > zero {
-            let weights = project(&points[..len], |corner| -corner).coordinates;
+            let weights = project_rarely(&points[..len], &|corner| -corner).coordinates;
             if !weights[..len].iter().all(|&weight| weight > zero) {
                 return Some(infinity);
             }

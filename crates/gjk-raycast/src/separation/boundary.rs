@@ -198,21 +198,18 @@ impl<V: Vector> Boundary<V> {
         if !is_turned && !is_beyond_base([1, 0, 2]) {
             return false;
         }
-        for vertex in points {
-            self.push(vertex);
+        for i in 0..points.len() {
+            self.grow(&points[if is_turned && i < 2 { 1 - i } else { i }], 1);
         }
-        if is_turned {
-            self.vertices.swap(0, 1);
-        }
-        for (&corners, opposite) in faces.iter().zip(0..) {
+        for (i, &corners) in faces.iter().enumerate() {
             let (facet, inner) = Facet::new(&self.vertices, corners, corners, self.acute);
-            let height = inner - facet.normal.dot(self.vertices[opposite].vertex.point);
+            let height = inner - facet.normal.dot(self.vertices[i].vertex.point);
             // NaN fails this too.
             if !(height > thickness) && thickness > V::Scalar::ZERO {
                 self.clear();
                 return false;
             }
-            self.add(facet, inner);
+            (self.facets[i], self.inner[i]) = (facet, inner);
         }
         true
     }
@@ -226,13 +223,20 @@ impl<V: Vector> Boundary<V> {
         (self.insertions, self.last) = (0, 0);
     }
 
-    fn push(&mut self, &vertex: &Vertex<V>) {
+    /// Adds a vertex, and room for so many facets.
+    #[inline(never)]
+    fn grow(&mut self, &vertex: &Vertex<V>, facets: usize) {
+        let none = [NONE; MAX_CORNERS];
+        let facet = Facet { corners: none, across: none, normal: V::ZERO, tilt: V::Scalar::ZERO, looked: 0 };
         self.vertices.push(Node { vertex, ridges: [NONE; 2] });
-    }
-
-    fn add(&mut self, facet: Facet<V>, inner: V::Scalar) {
-        self.facets.push(facet);
-        self.inner.push(inner);
+        for _ in 0..facets {
+            self.facets.push(facet);
+            self.inner.push(V::Scalar::infinity());
+        }
+        let fresh = Fresh { ridge: [NONE; 2], outer: NONE, back: 0, is_second: false };
+        while self.places.len() < self.facets.len() + 2 {
+            self.places.push(Place { seen: NONE, fresh });
+        }
     }
 
     /// The facet whose plane comes nearest to zero, or that zero is farthest beyond, and its bound.
@@ -379,11 +383,6 @@ impl<V: Vector> Boundary<V> {
     /// Finds the facets that a point is beyond, beginning with one, and the future ones between it and their horizon;
     /// returns the numbers of both.
     fn look(&mut self, facet: usize, point: V) -> (usize, usize) {
-        // There is room for all, so that no allocation is needed in between.
-        while self.places.len() < self.facets.len() + 2 {
-            self.places
-                .push(Place { seen: NONE, fresh: Fresh { ridge: [NONE; 2], outer: NONE, back: 0, is_second: false } });
-        }
         self.insertions += 2;
         let round = self.insertions;
         let (facets, vertices) = (self.facets.as_mut_slice(), self.vertices.as_slice());
@@ -426,11 +425,10 @@ impl<V: Vector> Boundary<V> {
             return false;
         }
         let apex = self.vertices.len() as u16;
-        self.push(vertex);
-        for k in seen..count {
-            self.places[k].seen = self.facets.len() as u16;
-            self.add(self.facets[0], V::Scalar::infinity());
+        for (place, index) in self.places[..count].iter_mut().skip(seen).zip(self.facets.len()..) {
+            place.seen = index as u16;
         }
+        self.grow(vertex, count.saturating_sub(seen));
         let (places, vertices) = (&self.places[..seen.max(count)], self.vertices.as_slice());
         let (facets, inner) = (self.facets.as_mut_slice(), self.inner.as_mut_slice());
         let acute = self.acute;

@@ -114,18 +114,20 @@ impl<V: Vector> Planes<'_, V> {
     fn support_toward(
         &mut self,
         bracket: &mut Bracket<'_, V>,
-        plane: RayPlane<V::Scalar>,
+        mut plane: RayPlane<V::Scalar>,
         toward: (V::Scalar, V::Scalar),
     ) -> Result<RayPoint<V>, Stop<V>> {
-        let is_beyond = |p: &RayPoint<V>| dot(toward, p.across()) > V::Scalar::ZERO;
-        let mut p = self.support(bracket, plane)?;
-        while !is_beyond(&p) && self.tilt < Scalar::ONE {
+        loop {
+            let p = self.support(bracket, plane)?;
+            if dot(toward, p.across()) > V::Scalar::ZERO {
+                return Ok(p);
+            }
+            if !(self.tilt < Scalar::ONE) {
+                break;
+            }
             let number = V::Scalar::from_f64;
             self.tilt = (self.tilt * number(8.0)).max(number(OF_FACE));
-            p = self.support(bracket, self.alpha.tilted(toward, self.tilt).plane())?;
-        }
-        if is_beyond(&p) {
-            return Ok(p);
+            plane = self.alpha.tilted(toward, self.tilt).plane();
         }
         self.tilt = self.tilt.max(Scalar::ONE);
         support_across(bracket, self.frame, toward)
