@@ -114,20 +114,18 @@ impl<V: Vector> Planes<'_, V> {
     fn support_toward(
         &mut self,
         bracket: &mut Bracket<'_, V>,
-        mut plane: RayPlane<V::Scalar>,
+        plane: RayPlane<V::Scalar>,
         toward: (V::Scalar, V::Scalar),
     ) -> Result<RayPoint<V>, Stop<V>> {
-        loop {
-            let p = self.support(bracket, plane)?;
-            if dot(toward, p.across()) > V::Scalar::ZERO {
-                return Ok(p);
-            }
-            if !(self.tilt < Scalar::ONE) {
-                break;
-            }
+        let is_beyond = |p: &RayPoint<V>| dot(toward, p.across()) > V::Scalar::ZERO;
+        let mut p = self.support(bracket, plane)?;
+        while !is_beyond(&p) && self.tilt < Scalar::ONE {
             let number = V::Scalar::from_f64;
             self.tilt = (self.tilt * number(8.0)).max(number(OF_FACE));
-            plane = self.alpha.tilted(toward, self.tilt).plane();
+            p = self.support(bracket, self.alpha.tilted(toward, self.tilt).plane())?;
+        }
+        if is_beyond(&p) {
+            return Ok(p);
         }
         self.tilt = self.tilt.max(Scalar::ONE);
         support_across(bracket, self.frame, toward)
