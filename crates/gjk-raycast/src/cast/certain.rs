@@ -108,13 +108,10 @@ pub(crate) fn show<B: CastBody + ?Sized>(
 #[inline(always)]
 pub(super) fn at_certain_entry<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     let line = bracket.line();
-    match crossing(bracket, line) {
-        None => Err(Stop::InDoubt),
-        Some(CertainCrossing::Misses(axis)) => {
-            support(bracket, axis)?;
-            Err(Stop::InDoubt)
-        }
-        Some(CertainCrossing::Enters { entry, bounds: [_, latest], normal }) => {
+    let known = crossing(bracket, line).ok_or(Stop::InDoubt)?;
+    let axis = match known {
+        CertainCrossing::Misses(axis) => axis,
+        CertainCrossing::Enters { entry, bounds: [_, latest], normal } => {
             let start = bracket.ray.start;
             if latest < start {
                 let reversed = Line { direction: -line.direction, ..line };
@@ -128,14 +125,19 @@ pub(super) fn at_certain_entry<V: Vector>(bracket: &mut Bracket<'_, V>) -> Resul
             if entry < start {
                 return Err(Stop::InDoubt);
             }
-            support(bracket, normal)?;
-            let point = line.at(entry) - normal * bracket.radius;
-            let witness = bracket.body.witness(point);
-            let found = bracket.close(bracket.radius, point, witness, entry)?;
-            bracket.enter_for_certain(latest);
-            Ok(found)
+            normal
         }
-    }
+    };
+    // The plane across it that supports the body.
+    let n = axis.unit().ok_or(Stop::InDoubt)?;
+    let (point, _) = bracket.support(n, n, &[])?;
+    bracket.advance(n, point)?;
+    let CertainCrossing::Enters { entry, bounds: [_, latest], normal } = known else { return Err(Stop::InDoubt) };
+    let point = line.at(entry) - normal * bracket.radius;
+    let witness = bracket.body.witness(point);
+    let found = bracket.close(bracket.radius, point, witness, entry)?;
+    bracket.enter_for_certain(latest);
+    Ok(found)
 }
 
 /// Where a line certainly enters the body, with the error of a point of the line included; the shape includes its own
@@ -145,14 +147,6 @@ fn crossing<V: Vector>(bracket: &Bracket<'_, V>, Line { foot, direction }: Line<
     let source = bracket.body.measures().origin + foot * scale;
     let error = bracket.error * scale + roundings(1.0, source.norm());
     bracket.body.certain_crossing(LineQuery::new(source, direction * scale).within(error))
-}
-
-/// Takes the plane across `n` that supports the body.
-#[inline(always)]
-fn support<V: Vector>(bracket: &mut Bracket<'_, V>, n: V) -> Result<(), Stop<V>> {
-    let n = n.unit().ok_or(Stop::InDoubt)?;
-    let (point, _) = bracket.support(n, n, &[])?;
-    bracket.advance(n, point)
 }
 
 impl<V: Vector> ObstacleCast<V> {

@@ -202,8 +202,10 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
         Err(Stop::Miss(n)) => {
             (Outcome::Miss(Miss { axis: bracket.axis_of_miss(n) }), (infinity, infinity), Status::Converged)
         }
-        Err(Stop::Exhausted(status)) => (Outcome::Undecided, bracket.bounds(None), status),
-        Err(Stop::InDoubt | Stop::Touches(_)) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
+        Err(stop) => {
+            let status = if let Stop::Exhausted(status) = stop { status } else { Status::Stalled };
+            (Outcome::Undecided, bracket.bounds(None), status)
+        }
     };
     let is_open = matches!(outcome, Outcome::Hit(_)) && bracket.is_worth_another_look();
     let (iterations, scale) = (bracket.iterations, bracket.scale);

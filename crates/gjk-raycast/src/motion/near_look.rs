@@ -21,7 +21,7 @@ use super::placed::{CornerFace, Placed};
 use crate::body::{Pair, Shapes as _, TracedSupport as _};
 use crate::gjk::rounding;
 use crate::separation::{Cores, Uncertainty, slack};
-use crate::simplex::{MAX_POINTS, project};
+use crate::simplex::{MAX_POINTS, project_rarely};
 use crate::unit::is_moderate;
 
 /// How far the closest points of both cores may be from the support points across their plane, in errors, for them to
@@ -145,7 +145,7 @@ impl<V: Vector> MovingPair<'_, V> {
             *point = cores.support(direction)?.point;
         }
         if radius > zero {
-            let weights = project(&points[..len], |corner| -corner).coordinates;
+            let weights = project_rarely(&points[..len], &|corner| -corner).coordinates;
             if !weights[..len].iter().all(|&weight| weight > zero) {
                 return Some(infinity);
             }

@@ -2,7 +2,7 @@
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
-use core::any::Any;
+use core::any::{Any, TypeId};
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -10,7 +10,6 @@ use smallvec::SmallVec;
 
 use super::cores::Vertex;
 use super::orientation::is_beyond;
-use crate::body::PointPair;
 use crate::double::{Vec3, cross, dot};
 use crate::simplex::{MAX_POINTS, nearest_face};
 
@@ -31,9 +30,10 @@ const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 /// The most facets of a walk to one that a point is beyond.
 const MAX_WALK: usize = 32;
 
-/// Facets that there is room for without an allocation; up to there it is made for so many more than there are.
-const FACETS: usize = 128;
-const MORE: usize = 28;
+/// Vertices, and facets, that there is room for without an allocation: an insertion adds a vertex and no more than two
+/// facets.
+const VERTICES: usize = 64;
+const FACETS: usize = 2 * VERTICES;
 
 /// The corner after each, and the one after that.
 const NEXT: [usize; 4] = [1, 2, 0, 1];
@@ -67,12 +67,7 @@ pub(super) struct Facet<V: Vector> {
 /// facet is nearer to zero than `min n·p`.
 #[derive(Debug)]
 pub(super) struct Boundary<V: Vector> {
-    points: SmallVec<[V; 64]>,
-    /// What else the vertices know, which hardly anything asks for.
-    origins: SmallVec<[Origin<V>; 64]>,
-    /// Of each vertex on the horizon of the last point, the facets that are to be along the ridges that begin and end
-    /// there.
-    ridges: SmallVec<[[u16; 2]; 64]>,
+    vertices: SmallVec<[Node<V>; VERTICES]>,
     facets: SmallVec<[Facet<V>; FACETS]>,
     /// A lower bound on the distance of zero from each facet, negative where zero is beyond it; infinite for what is no
     /// facet any more.
@@ -82,13 +77,25 @@ pub(super) struct Boundary<V: Vector> {
     insertions: u32,
     /// A facet at the last point.
     last: usize,
-    /// The facets that the last point was beyond, and those that take their place, in the beginning of these.
-    seen: SmallVec<[u16; FACETS]>,
-    fresh: SmallVec<[Fresh; FACETS]>,
+    /// In the beginning of these the facets that the last point was beyond, and those that take their place. A horizon
+    /// has at most two ridges more than facets before it, so that there are two more of these than facets.
+    places: SmallVec<[Place; FACETS]>,
 }
 
-/// The direction that a vertex was found along, and the points of both cores that it is made of.
-type Origin<V> = (V, PointPair<V>);
+/// A vertex, and if it is on the horizon of the last point, the facets that are to be along the ridges that begin and
+/// end there.
+#[derive(Clone, Copy, Debug)]
+struct Node<V: Vector> {
+    vertex: Vertex<V>,
+    ridges: [u16; 2],
+}
+
+/// A facet that the last point was beyond, and one that is to be.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    seen: u16,
+    fresh: Fresh,
+}
 
 /// A facet that is to be, between the new vertex and a ridge of the horizon. Its corners are the new vertex and the
 /// ridge's, in this order; in 2D the ridge is one vertex.
@@ -108,13 +115,30 @@ std::thread_local! {
     static OUTGROWN: core::cell::RefCell<Vec<Box<dyn Any>>> = const { core::cell::RefCell::new(Vec::new()) };
 }
 
-/// Acts on the polytopes that this thread keeps. Without the standard library none does.
-fn with_outgrown<R>(act: impl FnOnce(&mut Vec<Box<dyn Any>>) -> R) -> Option<R> {
+/// Has this thread keep what is given, if anything is, or takes what it keeps of a type. Without the standard library
+/// it keeps nothing.
+#[inline(never)]
+fn exchange(given: Option<Box<dyn Any>>, wanted: TypeId) -> Option<Box<dyn Any>> {
     #[cfg(feature = "std")]
-    return OUTGROWN.try_with(|kept| act(&mut kept.borrow_mut())).ok();
+    return OUTGROWN
+        .try_with(|kept| {
+            let mut kept = kept.try_borrow_mut().ok()?;
+            match given {
+                Some(given) => {
+                    kept.push(given);
+                    None
+                }
+                None => {
+                    let index = kept.iter().position(|kept| (**kept).type_id() == wanted)?;
+                    Some(kept.swap_remove(index))
+                }
+            }
+        })
+        .ok()
+        .flatten();
     #[cfg(not(feature = "std"))]
     {
-        let _ = act;
+        let _ = (given, wanted);
         None
     }
 }
@@ -126,18 +150,18 @@ impl<V: Vector> Boundary<V> {
     pub(super) fn lend<R>(accuracy: f64, search: impl FnOnce(&mut Self) -> R) -> R {
         // In its place from the beginning: it is a large object to move.
         let mut own = Self::new(accuracy);
-        let kept = with_outgrown(|all| Some(all.swap_remove(all.iter().position(|kept| kept.is::<Self>())?)));
-        let mut kept: Option<Box<Self>> = kept.flatten().and_then(|kept| kept.downcast().ok());
+        let kept = exchange(None, TypeId::of::<Self>());
+        let mut kept: Option<Box<Self>> = kept.and_then(|kept| kept.downcast().ok());
         if let Some(kept) = &mut kept {
             kept.clear();
             kept.acute = own.acute;
         }
         let found = search(kept.as_deref_mut().unwrap_or(&mut own));
-        if cfg!(feature = "std") && (own.points.spilled() || own.seen.spilled()) {
+        if cfg!(feature = "std") && own.vertices.spilled() {
             kept = Some(Box::new(own));
         }
         if let Some(kept) = kept {
-            let _ = with_outgrown(|all| all.push(kept));
+            let _ = exchange(Some(kept), TypeId::of::<Self>());
         }
         found
     }
@@ -147,16 +171,13 @@ impl<V: Vector> Boundary<V> {
     pub(super) fn new(accuracy: f64) -> Self {
         let acute = (ROUNDING / accuracy).min(ACUTE);
         Self {
-            points: SmallVec::new(),
-            origins: SmallVec::new(),
-            ridges: SmallVec::new(),
+            vertices: SmallVec::new(),
             facets: SmallVec::new(),
             inner: SmallVec::new(),
             acute: acute * acute,
             insertions: 0,
             last: 0,
-            seen: SmallVec::new(),
-            fresh: SmallVec::new(),
+            places: SmallVec::new(),
         }
     }
 
@@ -177,23 +198,18 @@ impl<V: Vector> Boundary<V> {
         if !is_turned && !is_beyond_base([1, 0, 2]) {
             return false;
         }
-        for vertex in points {
-            self.push(vertex);
+        for i in 0..points.len() {
+            self.grow(&points[if is_turned && i < 2 { 1 - i } else { i }], 1);
         }
-        if is_turned {
-            self.points.swap(0, 1);
-            self.origins.swap(0, 1);
-        }
-        for (&corners, opposite) in faces.iter().zip(0..) {
-            let (facet, inner) = Facet::new(&self.points, corners, corners, self.acute);
-            let height = inner - facet.normal.dot(self.points[opposite]);
+        for (i, &corners) in faces.iter().enumerate() {
+            let (facet, inner) = Facet::new(&self.vertices, corners, corners, self.acute);
+            let height = inner - facet.normal.dot(self.vertices[i].vertex.point);
             // NaN fails this too.
             if !(height > thickness) && thickness > V::Scalar::ZERO {
                 self.clear();
                 return false;
             }
-            self.inner.push(inner);
-            self.facets.push(facet);
+            (self.facets[i], self.inner[i]) = (facet, inner);
         }
         true
     }
@@ -201,18 +217,26 @@ impl<V: Vector> Boundary<V> {
     /// Empties the polytope.
     #[cold]
     fn clear(&mut self) {
-        self.points.clear();
-        self.origins.clear();
-        self.ridges.clear();
+        self.vertices.clear();
         self.facets.clear();
         self.inner.clear();
         (self.insertions, self.last) = (0, 0);
     }
 
-    fn push(&mut self, &Vertex { point, along, pair }: &Vertex<V>) {
-        self.points.push(point);
-        self.origins.push((along, pair));
-        self.ridges.push([NONE; 2]);
+    /// Adds a vertex, and room for so many facets.
+    #[inline(never)]
+    fn grow(&mut self, &vertex: &Vertex<V>, facets: usize) {
+        let none = [NONE; MAX_CORNERS];
+        let facet = Facet { corners: none, across: none, normal: V::ZERO, tilt: V::Scalar::ZERO, looked: 0 };
+        self.vertices.push(Node { vertex, ridges: [NONE; 2] });
+        for _ in 0..facets {
+            self.facets.push(facet);
+            self.inner.push(V::Scalar::infinity());
+        }
+        let fresh = Fresh { ridge: [NONE; 2], outer: NONE, back: 0, is_second: false };
+        while self.places.len() < self.facets.len() + 2 {
+            self.places.push(Place { seen: NONE, fresh });
+        }
     }
 
     /// The facet whose plane comes nearest to zero, or that zero is farthest beyond, and its bound.
@@ -246,14 +270,13 @@ impl<V: Vector> Boundary<V> {
     /// The vertex at a corner.
     #[inline]
     pub(super) fn vertex(&self, corner: u16) -> Vertex<V> {
-        let (along, pair) = self.origins[usize::from(corner)];
-        Vertex { point: self.points[usize::from(corner)], along, pair }
+        self.vertices[usize::from(corner)].vertex
     }
 
     /// The points of the vertices of a facet.
     #[inline]
     pub(super) fn corner_points(&self, index: usize) -> [V; MAX_CORNERS] {
-        self.facets[index].points(&self.points)
+        points(&self.vertices, self.facets[index].corners)
     }
 
     /// The number of facets.
@@ -323,11 +346,11 @@ impl<V: Vector> Boundary<V> {
     /// optimum of a linear function on the dual polytope, so that a walk uphill from any facet finds it; it begins
     /// where the last point was added.
     fn facet_below(&self, point: V) -> Option<usize> {
-        let (facets, points, inner) = (self.facets.as_slice(), self.points.as_slice(), self.inner.as_slice());
+        let (facets, vertices, inner) = (self.facets.as_slice(), self.vertices.as_slice(), self.inner.as_slice());
         let multiple = |i: usize| facets[i].normal.dot(point) / inner[i];
         let mut here = (self.last, multiple(self.last));
         for _ in 0..MAX_WALK {
-            if here.1 > V::Scalar::ONE && inner[here.0].is_finite() && is_seen(&facets[here.0], points, point) {
+            if here.1 > V::Scalar::ONE && inner[here.0].is_finite() && is_seen(&facets[here.0], vertices, point) {
                 return Some(here.0);
             }
             let mut best = here;
@@ -343,14 +366,14 @@ impl<V: Vector> Boundary<V> {
             }
             here = best;
         }
-        (0..facets.len()).find(|&i| inner[i].is_finite() && is_seen(&facets[i], points, point))
+        (0..facets.len()).find(|&i| inner[i].is_finite() && is_seen(&facets[i], vertices, point))
     }
 
     /// Adds a point beyond the given facet. `false`, and nothing is changed, if it is not beyond it, or there are too
     /// many.
     pub(super) fn insert(&mut self, facet: usize, vertex: &Vertex<V>) -> bool {
-        let is_full = self.points.len() >= usize::from(NONE / 4);
-        if is_full || !is_seen(&self.facets[facet], &self.points, vertex.point) {
+        let is_full = self.vertices.len() >= usize::from(NONE / 4);
+        if is_full || !is_seen(&self.facets[facet], &self.vertices, vertex.point) {
             return false;
         }
         let (seen, count) = self.look(facet, vertex.point);
@@ -360,32 +383,24 @@ impl<V: Vector> Boundary<V> {
     /// Finds the facets that a point is beyond, beginning with one, and the future ones between it and their horizon;
     /// returns the numbers of both.
     fn look(&mut self, facet: usize, point: V) -> (usize, usize) {
-        // There is room for all, so that no allocation is needed in between: a horizon has at most two ridges more than
-        // facets before it.
-        let room = self.facets.len() + 2;
-        if self.seen.len() < room {
-            let room = room.max(FACETS.min(room + MORE));
-            self.seen.resize(room, NONE);
-            self.fresh.resize(room, Fresh { ridge: [NONE; 2], outer: NONE, back: 0, is_second: false });
-        }
         self.insertions += 2;
         let round = self.insertions;
-        let (facets, points) = (self.facets.as_mut_slice(), self.points.as_slice());
-        let (seen, fresh) = (self.seen.as_mut_slice(), self.fresh.as_mut_slice());
+        let (facets, vertices) = (self.facets.as_mut_slice(), self.vertices.as_slice());
+        let places = self.places.as_mut_slice();
         facets[facet].looked = round + 1;
-        seen[0] = facet as u16;
+        places[0].seen = facet as u16;
         let (mut visited, mut count, mut ridges) = (0, 1, 0);
         while visited < count {
-            let index = seen[visited];
+            let index = places[visited].seen;
             visited += 1;
             let Facet { corners, across, .. } = facets[usize::from(index)];
             for i in 0..V::DIM {
                 let next = &mut facets[usize::from(across[i])];
                 if next.looked < round {
                     next.looked = round;
-                    if is_seen(next, points, point) {
+                    if is_seen(next, vertices, point) {
                         next.looked = round + 1;
-                        seen[count] = across[i];
+                        places[count].seen = across[i];
                         count += 1;
                     }
                 }
@@ -394,7 +409,7 @@ impl<V: Vector> Boundary<V> {
                     // Counterclockwise, the ridge opposite to a corner is from the next to the one after.
                     let ridge =
                         if V::DIM == 2 { [corners[1 - i]; 2] } else { [corners[NEXT[i]], corners[NEXT[i + 1]]] };
-                    fresh[ridges] = Fresh { ridge, outer: across[i], back, is_second: i == 1 };
+                    places[ridges].fresh = Fresh { ridge, outer: across[i], back, is_second: i == 1 };
                     ridges += 1;
                 }
             }
@@ -409,98 +424,102 @@ impl<V: Vector> Boundary<V> {
         if !self.is_cycle(count) {
             return false;
         }
-        let apex = self.points.len() as u16;
-        self.push(vertex);
-        for k in seen..count {
-            self.seen[k] = self.facets.len() as u16;
-            self.facets.push(self.facets[0]);
-            self.inner.push(V::Scalar::infinity());
+        let apex = self.vertices.len() as u16;
+        for (place, index) in self.places[..count].iter_mut().skip(seen).zip(self.facets.len()..) {
+            place.seen = index as u16;
         }
-        let (fresh, places, points) = (&self.fresh[..count], &self.seen[..seen.max(count)], self.points.as_slice());
+        self.grow(vertex, count.saturating_sub(seen));
+        let (places, vertices) = (&self.places[..seen.max(count)], self.vertices.as_slice());
         let (facets, inner) = (self.facets.as_mut_slice(), self.inner.as_mut_slice());
-        let ridges = self.ridges.as_slice();
         let acute = self.acute;
-        for (k, new) in fresh.iter().enumerate() {
+        for (k, &Place { seen: index, fresh: new }) in places[..count].iter().enumerate() {
             let [from, to] = new.ridge;
             let (corners, across) = if V::DIM == 2 {
-                let (corners, across) = ([apex, from, NONE], [new.outer, places[1 - k], NONE]);
+                let (corners, across) = ([apex, from, NONE], [new.outer, places[1 - k].seen, NONE]);
                 if new.is_second { ([from, apex, NONE], [across[1], across[0], NONE]) } else { (corners, across) }
             } else {
-                let (next, last) = (ridges[usize::from(to)][0], ridges[usize::from(from)][1]);
-                ([apex, from, to], [new.outer, places[usize::from(next)], places[usize::from(last)]])
+                let (next, last) = (vertices[usize::from(to)].ridges[0], vertices[usize::from(from)].ridges[1]);
+                ([apex, from, to], [new.outer, places[usize::from(next)].seen, places[usize::from(last)].seen])
             };
-            let index = places[k];
-            (facets[usize::from(index)], inner[usize::from(index)]) = Facet::new(points, corners, across, acute);
+            (facets[usize::from(index)], inner[usize::from(index)]) = Facet::new(vertices, corners, across, acute);
             facets[usize::from(new.outer)].across[usize::from(new.back)] = index;
         }
-        for &old in &places[count..] {
-            inner[usize::from(old)] = V::Scalar::infinity();
+        for old in &places[count..] {
+            inner[usize::from(old.seen)] = V::Scalar::infinity();
         }
-        self.last = usize::from(places[0]);
+        self.last = usize::from(places[0].seen);
         true
     }
 
     /// Finds which of the new facets begin and end at each vertex of the horizon; whether that is one each.
     fn is_cycle(&mut self, count: usize) -> bool {
-        let (fresh, ridges) = (&self.fresh[..count], self.ridges.as_mut_slice());
+        let (places, vertices) = (&self.places[..count], self.vertices.as_mut_slice());
         if V::DIM == 2 {
             return count == 2;
         }
-        for (k, new) in fresh.iter().enumerate() {
-            ridges[usize::from(new.ridge[0])][0] = k as u16;
-            ridges[usize::from(new.ridge[1])][1] = k as u16;
+        for (k, Place { fresh, .. }) in places.iter().enumerate() {
+            vertices[usize::from(fresh.ridge[0])].ridges[0] = k as u16;
+            vertices[usize::from(fresh.ridge[1])].ridges[1] = k as u16;
         }
         // If two began at one vertex, the first of them is not the one recorded there.
-        fresh.iter().enumerate().all(|(k, new)| {
-            let (from, to) = (usize::from(new.ridge[0]), usize::from(new.ridge[1]));
-            let next = fresh.get(usize::from(ridges[to][0]));
-            ridges[from][0] == k as u16
-                && ridges[to][1] == k as u16
-                && next.is_some_and(|next| next.ridge[0] == new.ridge[1])
+        places.iter().enumerate().all(|(k, Place { fresh, .. })| {
+            let [from, to] = fresh.ridge.map(|corner| vertices[usize::from(corner)].ridges);
+            let next = places.get(usize::from(to[0]));
+            from[0] == k as u16 && to[1] == k as u16 && next.is_some_and(|next| next.fresh.ridge[0] == fresh.ridge[1])
         })
     }
 }
 
 /// Whether a point is beyond a facet: by its plane if rounding leaves no doubt, otherwise exactly.
 #[inline]
-fn is_seen<V: Vector>(facet: &Facet<V>, points: &[V], point: V) -> bool {
-    let from = point - points[usize::from(facet.corners[0])];
+fn is_seen<V: Vector>(facet: &Facet<V>, vertices: &[Node<V>], point: V) -> bool {
+    let from = point - vertices[usize::from(facet.corners[0])].vertex.point;
     let height = facet.normal.dot(from);
     let doubt = facet.tilt * (from.abs().dot(V::ONE));
-    if height.abs() > doubt { height > V::Scalar::ZERO } else { is_exactly_beyond(facet, points, point) }
+    if height.abs() > doubt { height > V::Scalar::ZERO } else { is_exactly_beyond(facet, vertices, point) }
 }
 
 #[cold]
 #[inline(never)]
-fn is_exactly_beyond<V: Vector>(facet: &Facet<V>, points: &[V], point: V) -> bool {
-    is_beyond(&facet.points(points)[..V::DIM], point)
+fn is_exactly_beyond<V: Vector>(facet: &Facet<V>, vertices: &[Node<V>], point: V) -> bool {
+    is_beyond(&points(vertices, facet.corners)[..V::DIM], point)
 }
 
 impl<V: Vector> Facet<V> {
     /// A facet with its normal, and the distance of its plane from zero, as far as its corners are behind it.
     #[inline(always)]
-    fn new(points: &[V], corners: [u16; MAX_CORNERS], across: [u16; MAX_CORNERS], acute: f64) -> (Self, V::Scalar) {
-        let at: [V; MAX_CORNERS] = core::array::from_fn(|i| points[usize::from(corners[i.min(V::DIM - 1)])]);
-        // If a facet is nearly without area, its corners are near to one another, or to a line: the direction of one of
-        // them bounds its distance well enough, and says nothing about points beyond.
-        let (normal, tilt) = if V::DIM == 2 { edge_normal([at[0], at[1]]) } else { triangle_normal(at, acute) }
-            .unwrap_or_else(|| (at[0].unit().unwrap_or_else(|| V::axis(0)), V::Scalar::infinity()));
+    fn new(
+        vertices: &[Node<V>],
+        corners: [u16; MAX_CORNERS],
+        across: [u16; MAX_CORNERS],
+        acute: f64,
+    ) -> (Self, V::Scalar) {
+        let at = points(vertices, corners);
+        let (normal, tilt) = if V::DIM == 2 { edge_normal(at) } else { triangle_normal(at, acute) };
         let least = |a: V::Scalar, b: V::Scalar| if b < a { b } else { a };
         let inner = least(least(normal.dot(at[0]), normal.dot(at[1])), normal.dot(at[2]));
         (Self { corners, across, normal, tilt, looked: 0 }, inner)
     }
+}
 
-    /// The points of its corners; in 2D one of them twice.
-    fn points(&self, points: &[V]) -> [V; MAX_CORNERS] {
-        core::array::from_fn(|i| points[usize::from(self.corners[i.min(V::DIM - 1)])])
-    }
+/// The points of the corners of a facet; in 2D one of them twice.
+#[inline(always)]
+fn points<V: Vector>(vertices: &[Node<V>], corners: [u16; MAX_CORNERS]) -> [V; MAX_CORNERS] {
+    core::array::from_fn(|i| vertices[usize::from(corners[i.min(V::DIM - 1)])].vertex.point)
+}
+
+/// The normal of a facet nearly without area, and its rounding: its corners are near to one another, or to a line. So
+/// the direction of one of them bounds its distance well enough, and says nothing about points beyond.
+fn sliver_normal<V: Vector>(corner: V) -> (V, V::Scalar) {
+    (corner.unit().unwrap_or_else(|| V::axis(0)), V::Scalar::infinity())
 }
 
 /// The unit normal of an edge, to the right of it, and its rounding for a point at unit distance.
-fn edge_normal<V: Vector>([a, b]: [V; 2]) -> Option<(V, V::Scalar)> {
+fn edge_normal<V: Vector>([a, b, _]: [V; MAX_CORNERS]) -> (V, V::Scalar) {
     let edge = b - a;
     let turned = [edge.get(1), -edge.get(0)];
-    Some((V::from_fn(|i| turned[i]).unit()?, V::Scalar::from_f64(TILT) * V::Scalar::EPSILON))
+    let normal = V::from_fn(|i| turned[i]).unit();
+    normal.map_or_else(|| sliver_normal(a), |normal| (normal, V::Scalar::from_f64(TILT) * V::Scalar::EPSILON))
 }
 
 /// The unit normal of a triangle, counterclockwise as seen from where it points to, and its rounding for a point at
@@ -510,13 +529,13 @@ fn edge_normal<V: Vector>([a, b]: [V; 2]) -> Option<(V, V::Scalar)> {
 /// Any two edges are taken, unless they are nearly along one another: the square of the sine of their angle less than
 /// `acute`. To choose the best two takes a processor as long as all the rest.
 #[inline(always)]
-fn triangle_normal<V: Vector>([a, b, c]: [V; 3], acute: f64) -> Option<(V, V::Scalar)> {
+fn triangle_normal<V: Vector>([a, b, c]: [V; MAX_CORNERS], acute: f64) -> (V, V::Scalar) {
     let (u, v) = (edge(a, b), edge(a, c));
     let (squared_u, squared_v) = (dot(u, u), dot(v, v));
     let normal = cross(&u, &v);
     let area = dot(normal, normal);
     if area > LEAST && area > squared_u * squared_v * acute {
-        Some(unit_normal(normal, area, squared_u + squared_v))
+        unit_normal(normal, area, squared_u + squared_v)
     } else {
         careful_normal([a, b, c])
     }
@@ -525,7 +544,7 @@ fn triangle_normal<V: Vector>([a, b, c]: [V; 3], acute: f64) -> Option<(V, V::Sc
 /// The same by the two shortest edges, which leave the least rounding.
 #[cold]
 #[inline(never)]
-fn careful_normal<V: Vector>([a, b, c]: [V; 3]) -> Option<(V, V::Scalar)> {
+fn careful_normal<V: Vector>([a, b, c]: [V; MAX_CORNERS]) -> (V, V::Scalar) {
     let (ab, bc, ca) = (edge(a, b), edge(b, c), edge(c, a));
     let (sab, sbc, sca) = (dot(ab, ab), dot(bc, bc), dot(ca, ca));
     let (u, v, sum) = if sab >= sbc && sab >= sca {
@@ -537,7 +556,7 @@ fn careful_normal<V: Vector>([a, b, c]: [V; 3]) -> Option<(V, V::Scalar)> {
     };
     let normal = cross(&u, &v);
     let area = dot(normal, normal);
-    (area > LEAST).then(|| unit_normal(normal, area, sum))
+    if area > LEAST { unit_normal(normal, area, sum) } else { sliver_normal(a) }
 }
 
 /// The unit vector along the product of two edges of which the squared length and the sum of the squared lengths of the

@@ -29,30 +29,30 @@ pub(super) fn first_polytope<V: Vector>(
 ) -> Option<FirstPolytope<V>> {
     let known = state.simplex.points().len();
     let is_curved = cores.is_curved();
-    let vertex = |i: usize| {
+    let mut span = AffineSpan::new();
+    let mut vertices = span.points;
+    for (i, vertex) in vertices[..known].iter_mut().enumerate() {
         let along = state.simplex.along()[i];
         // Nothing asks for the length of others.
         let along = if is_curved { along.unit().unwrap_or(along) } else { along };
-        Vertex { point: state.simplex.points()[i], along, pair: state.simplex.witnesses()[i] }
-    };
+        *vertex = Vertex { point: state.simplex.points()[i], along, pair: state.simplex.witnesses()[i] };
+    }
     // GJK's best plane is a way out; its support point may be dropped.
     let mut best = state
         .axis
         .unit()
         .filter(|_| known > 0 && state.lower.is_finite())
-        .map(|n| WayOut { h: -state.lower, vertex: Vertex { along: -n, ..vertex(0) } });
+        .map(|n| WayOut { h: -state.lower, vertex: Vertex { along: -n, ..vertices[0] } });
     if known > V::DIM
         && let Some(best) = best
     {
-        let corners: [_; MAX_POINTS] = core::array::from_fn(|i| vertex(i.min(known - 1)));
         let thickness = cores.greatest_error() * Scalar::from_f64(2.0);
-        if boundary.begin(&corners[..known], thickness) {
+        if boundary.begin(&vertices[..known], thickness) {
             return Some(FirstPolytope::Full(best));
         }
     }
-    let mut span = AffineSpan::new();
-    for i in 0..known {
-        let _ = span.add(vertex(i), |u| cores.rounding_along(u));
+    for vertex in &vertices[..known] {
+        let _ = span.add(cores, vertex);
     }
     while span.len < V::DIM + 1 {
         let u = span.across();
@@ -62,11 +62,11 @@ pub(super) fn first_polytope<V: Vector>(
             best = Some(least);
         }
         if span.len == 0 {
-            let _ = span.add(ways[0].vertex, |u| cores.rounding_along(u));
+            let _ = span.add(cores, &ways[0].vertex);
         }
         let height = |way: &WayOut<V>| way.h - way.u().dot(span.points[0].point);
         let farther = if height(&ways[1]) > height(&ways[0]) { ways[1] } else { ways[0] };
-        if !span.add(farther.vertex, |u| cores.rounding_along(u)) {
+        if !span.add(cores, &farther.vertex) {
             return Some(FirstPolytope::Flat(least));
         }
     }
@@ -98,13 +98,13 @@ impl<V: Vector> AffineSpan<V> {
         Self { points: [none; MAX_POINTS], len: 0, basis: [V::ZERO; MAX_POINTS] }
     }
 
-    /// Adds a point, unless it is no farther from the span of the others than rounding, of which `rounding` says how
-    /// much it is along a unit vector; whether it was added.
-    fn add(&mut self, vertex: Vertex<V>, rounding: impl Fn(V) -> V::Scalar) -> bool {
+    /// Adds a point, unless it is no farther from the span of the others than rounding; whether it was added.
+    #[inline(never)]
+    fn add(&mut self, cores: &Cores<'_, V>, &vertex: &Vertex<V>) -> bool {
         if self.len > 0 {
             let edge = self.orthogonal(vertex.point - self.points[0].point);
             match edge.unit() {
-                Some(u) if u.dot(edge) > rounding(u) => self.basis[self.len - 1] = u,
+                Some(u) if u.dot(edge) > cores.rounding_along(u) => self.basis[self.len - 1] = u,
                 _ => return false,
             }
         }
@@ -114,6 +114,7 @@ impl<V: Vector> AffineSpan<V> {
     }
 
     /// The part of a vector across the span. Done twice, it is so to rounding.
+    #[inline(never)]
     fn orthogonal(&self, mut v: V) -> V {
         for _ in 0..2 {
             for &e in &self.basis[..self.len.saturating_sub(1)] {

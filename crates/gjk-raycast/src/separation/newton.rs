@@ -78,6 +78,7 @@ impl<V: Vector> Piece<V> {
 
     /// How far a support point is from what this piece predicts along its direction, as a part of its distance from
     /// the piece's own point; infinite where it is too far around.
+    #[inline(never)]
     pub(super) fn surprise(&self, vertex: &Vertex<V>) -> V::Scalar {
         let cosine = vertex.along.dot(self.n);
         if !(cosine > V::Scalar::from_f64(LARGEST)) {
@@ -211,6 +212,7 @@ impl<V: Vector> Piece<V> {
 }
 
 /// A unit vector turned by a step across it, or by the largest part of it that is sensible.
+#[inline(never)]
 fn turned<V: Vector>(n: V, [e, f]: [V; 2], step: Across<V::Scalar>) -> Option<V> {
     let size = dot(step, step).sqrt();
     // NaN fails this too.

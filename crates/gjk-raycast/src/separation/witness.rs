@@ -7,7 +7,7 @@ use super::cores::{Cores, WayOut};
 use super::met::MetPoint;
 use crate::body::PointPair;
 use crate::gjk::Gjk;
-use crate::simplex::project;
+use crate::simplex::project_rarely;
 
 /// The most facets of a walk.
 const MAX_WALK: usize = 64;
@@ -59,7 +59,7 @@ pub(super) fn ends<V: Vector>(
         if point.norm() <= noise {
             return Some(ends(points, u, way.h, -point));
         }
-        let across = project(state.simplex.points(), |_| u).across.unit();
+        let across = project_rarely(state.simplex.points(), &|_| u).across.unit();
         let mut lower = None;
         for n in [across, state.normal.unit().map(|n| -n)].into_iter().flatten() {
             if cores.iterations < max_iterations && lower.is_none() {
@@ -101,7 +101,7 @@ pub(super) fn nearest_to<V: Vector>(
 fn beside<V: Vector>(boundary: &Boundary<V>, from: usize, point: V) -> usize {
     let mut facet = from;
     for _ in 0..MAX_WALK {
-        let weights = project(&boundary.corner_points(facet)[..V::DIM], |corner| point - corner).coordinates;
+        let weights = project_rarely(&boundary.corner_points(facet)[..V::DIM], &|corner| point - corner).coordinates;
         let least = (1..V::DIM).fold(0, |least, i| if weights[i] < weights[least] { i } else { least });
         // NaN ends this too.
         if !(weights[least] < -V::Scalar::EPSILON * V::Scalar::from_f64(16.0)) {

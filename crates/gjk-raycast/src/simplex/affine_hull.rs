@@ -51,6 +51,12 @@ pub(crate) fn project<V: Vector>(points: &[V], v: impl FnOnce(V) -> V) -> Projec
     }
 }
 
+/// The same, compiled once for all who ask rarely.
+#[inline(never)]
+pub(crate) fn project_rarely<V: Vector>(points: &[V], v: &dyn Fn(V) -> V) -> Projection<V> {
+    project(points, v)
+}
+
 impl<V: Vector, const EDGES: usize> AffineHull<V, EDGES> {
     /// The hull of one more point than there are edges.
     #[inline(always)]

@@ -13,7 +13,7 @@ mod sub_algorithm;
 use convex_support::{Scalar, Vector};
 
 use crate::body::PointPair;
-pub(crate) use affine_hull::{AffineHull, project};
+pub(crate) use affine_hull::{AffineHull, project, project_rarely};
 pub(crate) use closest::{Closest, nearest_face};
 pub(crate) use regions::{cross, nearest};
 pub use sub_algorithm::SubAlgorithm;

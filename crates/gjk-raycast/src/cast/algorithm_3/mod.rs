@@ -20,7 +20,7 @@ use super::bracket::Bracket;
 use super::{RayContact, Stop};
 use crate::gjk::Progress;
 use crate::separation::is_around_zero;
-use crate::simplex::{Closest, MAX_POINTS, Simplex, project};
+use crate::simplex::{Closest, MAX_POINTS, Simplex, project_rarely};
 use refine::refine;
 use swept_simplex::entry;
 
@@ -162,7 +162,7 @@ pub(super) fn touch_beside<V: Vector>(
     let mut contact = bracket.close_beside(v, within, point, witness, normal)?;
     // If no plane was crossed, the ray meets the face of the simplex head-on.
     let against = -bracket.line().direction;
-    let head_on = || project(simplex.points(), |_| against).across.unit();
+    let head_on = || project_rarely(simplex.points(), &|_| against).across.unit();
     contact.normal = contact.normal.or_else(head_on).or(Some(against));
     Some(contact)
 }

@@ -4,7 +4,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::cast::line::Line;
-use crate::simplex::{AffineHull, Face, MAX_POINTS, faces, project};
+use crate::simplex::{AffineHull, Face, MAX_POINTS, faces, project_rarely};
 
 /// The first point of a line in a simplex swept by a ball.
 #[derive(Clone, Copy, Debug)]
@@ -98,7 +98,7 @@ fn enter_facet<V: Vector, const EDGES: usize>(
         if len == 0 {
             return None;
         }
-        let along = project(&rest[..len], |corner| below - corner).coordinates;
+        let along = project_rarely(&rest[..len], &|corner| below - corner).coordinates;
         weights = [V::Scalar::ZERO; MAX_POINTS];
         for (&place, &weight) in places[..len].iter().zip(&along) {
             weights[place] = weight;
