@@ -39,6 +39,7 @@ mod motion_laws;
 mod moving_boxes;
 mod options;
 mod paper;
+mod peer_manifolds;
 mod ray_entries;
 mod regressions_distance;
 mod regressions_linear_cast;
