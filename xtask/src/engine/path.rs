@@ -164,6 +164,10 @@ fn of_what(answer: Answer, met: Met) -> Answer {
     }
 }
 
+/// How far apart planners test poses, along the joint values and in radians or metres. A common rule takes one per cent
+/// of the diagonal of all joint limits, which is 0.13 rad for a Panda; careful ones take 1/32 or 1/128.
+pub const STEPS: [f64; 3] = [0.13, 1.0 / 32.0, 1.0 / 128.0];
+
 /// What is known of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -178,23 +182,23 @@ pub struct EdgeReport {
     pub verdict: Verdict,
     /// The least of a few runs.
     pub nanoseconds: f64,
-    /// Whether poses along it, at each of two steps, are all free.
-    pub sampled_free: [bool; 2],
+    /// Whether poses along it, at each of the steps, are all free.
+    pub sampled_free: [bool; STEPS.len()],
 }
 
-/// The edges of a `path` query, one by one, in double precision; beside each what poses along it say, one for each of
-/// these steps of the joint values.
+/// The edges of a `path` query, one by one, in double precision; beside each what poses along it say, for each of the
+/// [`STEPS`].
 ///
 /// # Errors
 /// Where the query is none.
-pub fn edges(object: &Object, meshes: &Meshes, steps: &[f64; 2]) -> Result<Vec<EdgeReport>, Problem> {
+pub fn edges(object: &Object, meshes: &Meshes) -> Result<Vec<EdgeReport>, Problem> {
     let dimension = Dimension::default();
     let fields = Written::new(object, &dimension).fields(EVERY, Path::FIELDS)?;
     let query = Path::read(&fields)?;
     let how = How { precision: Precision::F64, tol: None, method: None, meshes };
     match dimension.known() {
-        Some(2) => query.way::<DVec2>(&how)?.edges(steps),
-        _ => query.way::<DVec3>(&how)?.edges(steps),
+        Some(2) => query.way::<DVec2>(&how)?.edges(),
+        _ => query.way::<DVec3>(&how)?.edges(),
     }
 }
 
@@ -216,7 +220,7 @@ pub fn picture(object: &Object, meshes: &Meshes) -> Result<Option<(String, bool)
 }
 
 impl<V: Space<Scalar = f64>> Way<V> {
-    fn edges(&self, steps: &[f64; 2]) -> Result<Vec<EdgeReport>, Problem> {
+    fn edges(&self) -> Result<Vec<EdgeReport>, Problem> {
         let mut workspace = PathWorkspace::new();
         let mut ask = |waypoints: &[Vec<f64>]| {
             self.robot.path(waypoints, &self.scene, self.options, &mut workspace).map_err(problem)
@@ -235,8 +239,8 @@ impl<V: Space<Scalar = f64>> Way<V> {
                 _ => Verdict::Undecided,
             };
             let length = edge[0].iter().zip(&edge[1]).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
-            let mut sampled_free = [true; 2];
-            for (is_free, step) in sampled_free.iter_mut().zip(steps) {
+            let mut sampled_free = [true; STEPS.len()];
+            for (is_free, step) in sampled_free.iter_mut().zip(STEPS) {
                 let count = (length / step).ceil().max(1.0) as usize;
                 for k in 0..=count {
                     let part = k as f64 / count as f64;
