@@ -14,6 +14,7 @@ const SLOTS: usize = 4;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hint {
     vertices: [u32; SLOTS],
+    /// As wide as the others, so that a copy has no bytes between.
     next: u32,
 }
 

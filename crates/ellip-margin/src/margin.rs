@@ -152,7 +152,8 @@ impl<V: Vector> Margin<V> {
 
     /// A lower bound of the margin after E₁ has moved, without another query: `from` is where it was when this margin
     /// was found, and `to` is where it is now. E₂ is at rest. As long as the bound is above the margin to be kept, E₂
-    /// need not be asked about again. −1 if the semi-axes have changed.
+    /// need not be asked about again. −1 if the semi-axes have changed. The bound is as right as the margin: one that
+    /// was found with a wide tolerance, or has not converged, promises nothing.
     ///
     /// ```
     /// use ellip_margin::convex_support::{Ellipsoid, glam::{DQuat, DVec3}};

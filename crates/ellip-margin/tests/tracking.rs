@@ -48,10 +48,10 @@ fn a_margin_bounds_what_it_is_after_a_motion() {
         let (link, obstacle, way, turn) = bodies.new_tree(&mut rng).expect("a value").current();
         let size = 0.5_f64.powi(k % 20);
         let to = link.posed(DQuat::from_scaled_axis(turn * size), way * size).expect("finite");
-        let [before, after] = [&link, &to].map(|link| free_margin(link, &obstacle, MarginOptions::default()).margin);
-        let known = free_margin(&link, &obstacle, MarginOptions::default()).after_motion(&link, &to);
-        assert!(-1.0 <= known && known <= after, "{known} of {before}, and it is {after}");
-        used = used.max((known + 1.0) / (before + 1.0));
+        let [before, after] = [&link, &to].map(|link| free_margin(link, &obstacle, MarginOptions::default()));
+        let (known, after) = (before.after_motion(&link, &to), after.margin);
+        assert!(-1.0 <= known && known <= after, "{known} of {before:?}, and it is {after}");
+        used = used.max((known + 1.0) / (before.margin + 1.0));
     }
     assert!(used > 0.999, "a small step leaves nearly all of the margin: {used}");
     let (wide, ball) = (DVec3::new(2.0, 1.0, 1.0), Ellipsoid::new(DVec3::ZERO, DVec3::ONE, DQuat::IDENTITY));

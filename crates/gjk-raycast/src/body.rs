@@ -253,7 +253,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
 }
 
 impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Both<'_, A, B> {
-    /// The two bodies in order, and their cores in the order of the call.
+    /// The two bodies in order, and their cores, which are given in the order of the call.
     #[inline(always)]
     pub(crate) fn in_order(mut self, [a, b]: [&Core<A::Vector>; 2]) -> (Self, [&Core<A::Vector>; 2]) {
         self.is_swapped = comes_first(b, a);

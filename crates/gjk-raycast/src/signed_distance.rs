@@ -94,6 +94,7 @@ compiled_once! {
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, true>(&mut cores, &wanted, observer));
         let mut answer = found.signed_distance(&cores);
+        // In place: a copy would wait until the answer is in the cache.
         if is_swapped {
             answer = answer.reversed();
         }

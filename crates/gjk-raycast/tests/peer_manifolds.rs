@@ -21,7 +21,7 @@ where
     contact(a, b, distance, SignedDistanceOptions::default()).expect("they are as near as that")
 }
 
-/// Two unit cubes, one turned about y and one about z by an eighth of a turn, so that an edge of each is nearest.
+/// Two cubes of a size, one turned about y and one about z by an eighth of a turn, so that an edge of each is nearest.
 fn crossed_cubes(size: f64, [x, y]: [f64; 2]) -> Contact<DVec3> {
     let cube = cuboid::<DVec3>([0.5 * size; 3]);
     let about_y = turned(cube, DQuat::from_rotation_y(FRAC_PI_4), [0.0; 3]);

@@ -79,7 +79,7 @@ pub(super) struct Boundary<V: Vector> {
     last: usize,
     /// In the beginning of these the facets that the last point was beyond, and those that take their place. A horizon
     /// has at most two ridges more than facets before it, so that there are two more of these than facets.
-    places: SmallVec<[Place; FACETS]>,
+    slots: SmallVec<[Slot; FACETS]>,
 }
 
 /// A vertex, and if it is on the horizon of the last point, the facets that are to be along the ridges that begin and
@@ -92,7 +92,7 @@ struct Node<V: Vector> {
 
 /// A facet that the last point was beyond, and one that is to be.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct Slot {
     seen: u16,
     fresh: Fresh,
 }
@@ -177,7 +177,7 @@ impl<V: Vector> Boundary<V> {
             acute: acute * acute,
             insertions: 0,
             last: 0,
-            places: SmallVec::new(),
+            slots: SmallVec::new(),
         }
     }
 
@@ -234,8 +234,8 @@ impl<V: Vector> Boundary<V> {
             self.inner.push(V::Scalar::infinity());
         }
         let fresh = Fresh { ridge: [NONE; 2], outer: NONE, back: 0, is_second: false };
-        while self.places.len() < self.facets.len() + 2 {
-            self.places.push(Place { seen: NONE, fresh });
+        while self.slots.len() < self.facets.len() + 2 {
+            self.slots.push(Slot { seen: NONE, fresh });
         }
     }
 
@@ -386,12 +386,12 @@ impl<V: Vector> Boundary<V> {
         self.insertions += 2;
         let round = self.insertions;
         let (facets, vertices) = (self.facets.as_mut_slice(), self.vertices.as_slice());
-        let places = self.places.as_mut_slice();
+        let slots = self.slots.as_mut_slice();
         facets[facet].looked = round + 1;
-        places[0].seen = facet as u16;
+        slots[0].seen = facet as u16;
         let (mut visited, mut count, mut ridges) = (0, 1, 0);
         while visited < count {
-            let index = places[visited].seen;
+            let index = slots[visited].seen;
             visited += 1;
             let Facet { corners, across, .. } = facets[usize::from(index)];
             for i in 0..V::DIM {
@@ -400,7 +400,7 @@ impl<V: Vector> Boundary<V> {
                     next.looked = round;
                     if is_seen(next, vertices, point) {
                         next.looked = round + 1;
-                        places[count].seen = across[i];
+                        slots[count].seen = across[i];
                         count += 1;
                     }
                 }
@@ -409,7 +409,7 @@ impl<V: Vector> Boundary<V> {
                     // Counterclockwise, the ridge opposite to a corner is from the next to the one after.
                     let ridge =
                         if V::DIM == 2 { [corners[1 - i]; 2] } else { [corners[NEXT[i]], corners[NEXT[i + 1]]] };
-                    places[ridges].fresh = Fresh { ridge, outer: across[i], back, is_second: i == 1 };
+                    slots[ridges].fresh = Fresh { ridge, outer: across[i], back, is_second: i == 1 };
                     ridges += 1;
                 }
             }
@@ -417,7 +417,7 @@ impl<V: Vector> Boundary<V> {
         (count, ridges)
     }
 
-    /// Puts the new facets in the places of those that were `seen`, and more if there are not enough, around the new
+    /// Puts the new facets in the slots of those that were `seen`, and more if there are not enough, around the new
     /// vertex. `false`, and nothing is changed, if the horizon is not one cycle, which only numbers that underflow can
     /// cause.
     fn replace(&mut self, vertex: &Vertex<V>, seen: usize, count: usize) -> bool {
@@ -425,46 +425,46 @@ impl<V: Vector> Boundary<V> {
             return false;
         }
         let apex = self.vertices.len() as u16;
-        for (place, index) in self.places[..count].iter_mut().skip(seen).zip(self.facets.len()..) {
-            place.seen = index as u16;
+        for (slot, index) in self.slots[..count].iter_mut().skip(seen).zip(self.facets.len()..) {
+            slot.seen = index as u16;
         }
         self.grow(vertex, count.saturating_sub(seen));
-        let (places, vertices) = (&self.places[..seen.max(count)], self.vertices.as_slice());
+        let (slots, vertices) = (&self.slots[..seen.max(count)], self.vertices.as_slice());
         let (facets, inner) = (self.facets.as_mut_slice(), self.inner.as_mut_slice());
         let acute = self.acute;
-        for (k, &Place { seen: index, fresh: new }) in places[..count].iter().enumerate() {
+        for (k, &Slot { seen: index, fresh: new }) in slots[..count].iter().enumerate() {
             let [from, to] = new.ridge;
             let (corners, across) = if V::DIM == 2 {
-                let (corners, across) = ([apex, from, NONE], [new.outer, places[1 - k].seen, NONE]);
+                let (corners, across) = ([apex, from, NONE], [new.outer, slots[1 - k].seen, NONE]);
                 if new.is_second { ([from, apex, NONE], [across[1], across[0], NONE]) } else { (corners, across) }
             } else {
                 let (next, last) = (vertices[usize::from(to)].ridges[0], vertices[usize::from(from)].ridges[1]);
-                ([apex, from, to], [new.outer, places[usize::from(next)].seen, places[usize::from(last)].seen])
+                ([apex, from, to], [new.outer, slots[usize::from(next)].seen, slots[usize::from(last)].seen])
             };
             (facets[usize::from(index)], inner[usize::from(index)]) = Facet::new(vertices, corners, across, acute);
             facets[usize::from(new.outer)].across[usize::from(new.back)] = index;
         }
-        for old in &places[count..] {
+        for old in &slots[count..] {
             inner[usize::from(old.seen)] = V::Scalar::infinity();
         }
-        self.last = usize::from(places[0].seen);
+        self.last = usize::from(slots[0].seen);
         true
     }
 
     /// Finds which of the new facets begin and end at each vertex of the horizon; whether that is one each.
     fn is_cycle(&mut self, count: usize) -> bool {
-        let (places, vertices) = (&self.places[..count], self.vertices.as_mut_slice());
+        let (slots, vertices) = (&self.slots[..count], self.vertices.as_mut_slice());
         if V::DIM == 2 {
             return count == 2;
         }
-        for (k, Place { fresh, .. }) in places.iter().enumerate() {
+        for (k, Slot { fresh, .. }) in slots.iter().enumerate() {
             vertices[usize::from(fresh.ridge[0])].ridges[0] = k as u16;
             vertices[usize::from(fresh.ridge[1])].ridges[1] = k as u16;
         }
         // If two began at one vertex, the first of them is not the one recorded there.
-        places.iter().enumerate().all(|(k, Place { fresh, .. })| {
+        slots.iter().enumerate().all(|(k, Slot { fresh, .. })| {
             let [from, to] = fresh.ridge.map(|corner| vertices[usize::from(corner)].ridges);
-            let next = places.get(usize::from(to[0]));
+            let next = slots.get(usize::from(to[0]));
             from[0] == k as u16 && to[1] == k as u16 && next.is_some_and(|next| next.fresh.ridge[0] == fresh.ridge[1])
         })
     }
