@@ -226,8 +226,7 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
 
     fn level(&self, time: V::Scalar, normal: V) -> (V::Scalar, V::Scalar) {
         let placed = &self.placed(time);
-        let cores = placed.cores();
-        let mut pair = Pair::new(placed, cores.each_ref());
+        let mut pair = placed.pair();
         let size = pair.size(placed.offset);
         // If the size is out of range, nothing is known.
         if !is_moderate(size) {

@@ -4,7 +4,7 @@ use core::cell::Cell;
 
 use convex_support::{Core, CoreKind, Feature, Hint, Matrix, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
-use crate::body::{Aligned, Of, PointPair, Shapes};
+use crate::body::{Aligned, Of, Pair, PointPair, Shapes};
 use crate::separation::across_corners;
 use crate::shape::Shape;
 use crate::simplex::{MAX_POINTS, project};
@@ -114,6 +114,14 @@ pub(super) struct Placed<'s, V: Vector> {
     /// The origin of `a` as seen from that of `b`.
     pub(super) offset: V,
     pub(super) place: V,
+}
+
+impl<V: Vector> Placed<'_, V> {
+    /// Their difference.
+    #[inline(always)]
+    pub(super) fn pair(&self) -> Pair<'_, Self> {
+        Pair::new(self, [&self.a.core, &self.b.core])
+    }
 }
 
 impl<V: Vector> Shapes for Placed<'_, V> {
