@@ -1,10 +1,11 @@
 //! The distance of two shapes (the paper's Algorithm 2).
 
-use convex_support::{Core, SupportMap, compiled_once};
+use convex_support::{Core, SupportMap, Vector, compiled_once};
 
 use crate::body::{Both, Shapes};
 use crate::observer::Observer;
 use crate::separation::{Cores, OfOverlap, Wanted, direct, separation};
+use crate::shape::Shape;
 use crate::{Distance, DistanceOptions, Iterate, SignedDistance, SignedDistanceOptions};
 
 /// The distance of two shapes, and their closest points.
@@ -49,6 +50,13 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     watched(a, b, options, &mut Observer::new(&mut observer))
+}
+
+/// [`distance`] of shapes behind pointers, compiled once for all callers that need it rarely.
+#[cold]
+#[inline(never)]
+pub(crate) fn distance_of_any<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, options: DistanceOptions<V>) -> Distance<V> {
+    distance(a, b, options)
 }
 
 #[inline(always)]

@@ -4,11 +4,11 @@ use convex_support::{Posed, Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::cast::sliding;
+use crate::distance::distance_of_any;
 use crate::shape::{Shape, WithoutLines};
 use crate::signed_distance::signed_distance_of_any;
 use crate::{
     DistanceOptions, Impact, LinearCast, LinearCastOptions, Motion, Outcome, SignedDistance, SignedDistanceOptions,
-    distance,
 };
 
 /// How far on shapes are tested first, in units of their uncertainty; how much farther each time; and how often at
@@ -34,7 +34,7 @@ impl<V: Vector> StartingPair<'_, V> {
         let zero = V::Scalar::ZERO;
         let left = |taken: usize| options.max_iterations.saturating_sub(taken);
         let wanted = DistanceOptions::new().with_max_iterations(left(answer.iterations));
-        let at_start = distance(self.a, self.b, wanted.with_sub_algorithm(options.sub_algorithm));
+        let at_start = distance_of_any(self.a, self.b, wanted.with_sub_algorithm(options.sub_algorithm));
         answer.iterations += at_start.iterations;
         let max_iterations = left(answer.iterations);
         let start = self.signed_distance(&LinearCastOptions { max_iterations, ..*options }, zero);
