@@ -324,7 +324,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
 
     /// Moves the lower bound up to the plane across the unit vector `n` that supports the core at `point`, unless that
     /// ends the search.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn advance(&mut self, n: V, point: V) -> Result<(), Stop<V>> {
         if let Some(crossing) = self.crossing(n, point)?
             && crossing.bound.at - self.noise * crossing.bound.spread >= self.earliest()
@@ -377,7 +377,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// The contact where the last plane is crossed, if a point made of `witness`, about which a ball of the radius is
     /// within the body, is no farther than that from the line at `high`, and that is no farther behind the plane than
     /// was asked for.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn close(
         &mut self,
         radius: V::Scalar,

@@ -74,6 +74,7 @@ impl<V: Vector> Simplex<V> {
     }
 
     /// Keeps only a face, with these weights of its corners.
+    #[inline(never)]
     pub(crate) fn retain(&mut self, face: Face, weights: [V::Scalar; MAX_POINTS]) {
         self.keep(face);
         self.weigh(weights);
@@ -119,6 +120,7 @@ impl<V: Vector> Simplex<V> {
     }
 
     /// The weighted sum of the witnesses.
+    #[inline(never)]
     pub(crate) fn weighted_witness(&self) -> PointPair<V> {
         self.weighted().fold(PointPair::default(), |sum, (weight, witness)| sum.plus(witness, weight))
     }
