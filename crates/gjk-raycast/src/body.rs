@@ -145,13 +145,13 @@ pub(crate) trait Shapes {
     fn cores(&self) -> [Core<Self::Vector>; 2];
     /// The support points of both cores, each along a direction of its own.
     fn support_points(&self, along: [Self::Vector; 2], hints: &mut [Hint; 2]) -> [Aligned<Self::Vector>; 2];
-    /// As [`SupportMap::core_support_hessian`] of one of them.
-    fn support_hessian(
+    /// As [`SupportMap::core_support_hessian`] of both, each along a direction of its own. In one call: for each call
+    /// that gets them, the changes are copied, and the copy waits until they are in the cache.
+    fn support_hessians(
         &self,
-        of: Of,
-        direction: Self::Vector,
+        along: [Self::Vector; 2],
         changes: [Self::Vector; 2],
-    ) -> [<Self::Vector as Vector>::Scalar; 3];
+    ) -> [[<Self::Vector as Vector>::Scalar; 3]; 2];
     /// As [`SupportMap::core_closest_point`] of one of them.
     fn closest_point(&self, of: Of, x: Self::Vector) -> Option<Self::Vector>;
     /// As [`SupportMap::certain_crossing`] of one of them.
@@ -217,16 +217,15 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
     }
 
     #[inline(always)]
-    fn support_hessian(
+    fn support_hessians(
         &self,
-        of: Of,
-        direction: A::Vector,
+        [along_a, along_b]: [A::Vector; 2],
         changes: [A::Vector; 2],
-    ) -> [<A::Vector as Vector>::Scalar; 3] {
-        match self.named(of) {
-            Of::A => self.a.0.core_support_hessian(direction, changes),
-            Of::B => self.b.0.core_support_hessian(direction, changes),
-        }
+    ) -> [[<A::Vector as Vector>::Scalar; 3]; 2] {
+        let (along_a, along_b) = if self.is_swapped { (along_b, along_a) } else { (along_a, along_b) };
+        let a = self.a.0.core_support_hessian(along_a, changes);
+        let b = self.b.0.core_support_hessian(along_b, changes);
+        if self.is_swapped { [b, a] } else { [a, b] }
     }
 
     #[inline(always)]
@@ -436,8 +435,7 @@ impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
 
     #[inline(always)]
     fn hessian(&self, direction: T::Vector, changes: [T::Vector; 2]) -> Symmetric<<T::Vector as Vector>::Scalar> {
-        let a = self.shapes.support_hessian(Of::A, direction, changes);
-        let b = self.shapes.support_hessian(Of::B, -direction, changes);
+        let [a, b] = self.shapes.support_hessians([direction, -direction], changes);
         let whole = [0, 1, 2].map(|i| (a[i] + b[i]) * self.per_unit);
         without_ball(Symmetric::of(whole), self.peeled[0] + self.peeled[1], direction, changes)
     }
@@ -479,8 +477,8 @@ impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
         direction: T::Vector,
         changes: [T::Vector; 2],
     ) -> Symmetric<<T::Vector as Vector>::Scalar> {
-        let whole = self.shapes.support_hessian(Of::A, direction, changes).map(|entry| entry * self.per_unit);
-        without_ball(Symmetric::of(whole), self.peeled[0], direction, changes)
+        let [whole, _] = self.shapes.support_hessians([direction, -direction], changes);
+        without_ball(Symmetric::of(whole.map(|entry| entry * self.per_unit)), self.peeled[0], direction, changes)
     }
 
     #[inline(always)]

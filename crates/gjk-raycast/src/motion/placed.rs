@@ -144,11 +144,8 @@ impl<V: Vector> Shapes for Placed<'_, V> {
         [Aligned(self.a.turned(a)), Aligned(self.b.turned(b))]
     }
 
-    fn support_hessian(&self, of: Of, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
-        match of {
-            Of::A => self.a.core_support_hessian(direction, changes),
-            Of::B => self.b.core_support_hessian(direction, changes),
-        }
+    fn support_hessians(&self, [along_a, along_b]: [V; 2], changes: [V; 2]) -> [[V::Scalar; 3]; 2] {
+        [self.a.core_support_hessian(along_a, changes), self.b.core_support_hessian(along_b, changes)]
     }
 
     #[inline(always)]
