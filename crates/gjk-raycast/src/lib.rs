@@ -138,9 +138,7 @@ mod curvature;
 mod data;
 mod derivative;
 mod distance;
-mod distances;
 mod double;
-mod error;
 mod extra;
 mod free_step;
 mod gjk;
@@ -181,9 +179,7 @@ pub use derivative::{
     ClosestFeatures, ClosestVelocities, ImpactGradient, PairGradient, PairHessian, RayCastGradient,
     RigidMotionGradient, Smoothness,
 };
-pub use distance::{distance, distance_with};
-pub use distances::map_distances_into;
-pub use error::RayCastError;
+pub use distance::{distance, distance_with, map_distances_into};
 pub use free_step::FreeStep;
 pub use half_space::HalfSpace;
 pub use intersects::{intersects, intersects_with};
@@ -200,7 +196,7 @@ pub use options::{
     CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, MotionCastOptions, RayCastOptions,
     SignedDistanceOptions, StartInContact,
 };
-pub use ray::{Motion, Ray};
+pub use ray::{Motion, Ray, RayCastError};
 pub use ray_cast::{ray_cast, ray_cast_with};
 #[cfg(feature = "rayon")]
 pub use ray_casts::par_ray_casts;

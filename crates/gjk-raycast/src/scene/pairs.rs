@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 
 use convex_support::{PairSearch, ScalarOf, SupportMap, Vector};
 
-use super::height_bound::HeightBound;
+use super::bounds::HeightBound;
 use super::result::{PairContact, PairDistance, Work, reuse};
 use super::{Among, Body, Scene};
 use crate::{DistanceOptions, distance};

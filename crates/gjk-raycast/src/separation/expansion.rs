@@ -3,12 +3,11 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::basin;
 use super::boundary::Boundary;
 use super::cores::{Cores, WayOut};
 use super::first_polytope::{FirstPolytope, first_polytope};
-use super::met::MetPoint;
-use super::witness::{self, Ends};
+use super::newton;
+use super::witness::{self, Ends, MetPoint};
 use crate::SignedDistanceOptions;
 use crate::gjk::Gjk;
 use crate::observer::Observer;
@@ -202,7 +201,7 @@ impl<V: Vector> Expansion<V> {
         corners: &[u16],
         options: &SignedDistanceOptions<V>,
     ) -> Option<()> {
-        let way = basin::descend(cores, boundary, self.way, corners, options, self.closed.is_some())?;
+        let way = newton::descend(cores, boundary, self.way, corners, options, self.closed.is_some())?;
         self.take(cores, way);
         Some(())
     }
