@@ -52,16 +52,12 @@ where
 }
 
 #[inline(always)]
-fn watched<A, B>(
+fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     a: &A,
     b: &B,
     options: DistanceOptions<A::Vector>,
     observer: &mut Observer<'_, A::Vector>,
-) -> Distance<A::Vector>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> Distance<A::Vector> {
     let shapes = Both::<_, _>::new(a, b);
     let cores = shapes.cores();
     // What is deep is left to the search.

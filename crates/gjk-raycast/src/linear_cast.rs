@@ -104,17 +104,13 @@ where
 }
 
 #[inline(always)]
-fn watched<A, B>(
+fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     a: &A,
     b: &B,
     motion: Motion<A::Vector>,
     options: LinearCastOptions<A::Vector>,
     observer: &mut Observer<'_, A::Vector>,
-) -> Result<LinearCast<A::Vector>, RayCastError>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> Result<LinearCast<A::Vector>, RayCastError> {
     motion.check(&options)?;
     let target = options.target_distance.max(<A::Vector as Vector>::Scalar::ZERO);
     Ok(as_body(a, b, target, |body, shapes, cores| by_search(body, shapes, cores, motion, &options, observer)))
@@ -122,16 +118,12 @@ where
 
 /// The questions of a search about two shapes, one of them swept by a ball.
 #[inline(always)]
-pub(crate) fn as_body<A, B, R>(
+pub(crate) fn as_body<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, R>(
     a: &A,
     b: &B,
     target_distance: <A::Vector as Vector>::Scalar,
     search: impl FnOnce(&mut dyn CastBody<Vector = A::Vector>, [Shape<'_, A::Vector>; 2], &[Core<A::Vector>; 2]) -> R,
-) -> R
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> R {
     let shapes = Both::<_, _, true>::new(a, b);
     let mut cores = shapes.cores();
     cores[0] = cores[0].rounded(target_distance);

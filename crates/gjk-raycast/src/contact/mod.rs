@@ -76,17 +76,13 @@ where
 }
 
 /// [`contact_after`], if there was a contact before.
-pub(crate) fn contact_of<A, B>(
+pub(crate) fn contact_of<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     a: &A,
     b: &B,
     within: <A::Vector as Vector>::Scalar,
     options: SignedDistanceOptions<A::Vector>,
     last: Option<&Contact<A::Vector>>,
-) -> Option<Contact<A::Vector>>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> Option<Contact<A::Vector>> {
     let axis = options.axis.or(last.map(|last| last.normal));
     let limit = options.limit.min(within);
     let answer = signed_distance(a, b, SignedDistanceOptions { axis, limit, ..options });

@@ -8,7 +8,7 @@ mod state;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{CastBody as _, Pair, PointPair, Shapes, TracedSupport};
+use crate::body::{CastBody as _, Pair, PointPair, ScalarFrom, Shapes, TracedSupport};
 use crate::observer::Observer;
 use crate::unit::{lost_to_underflow, moderate, power_of_two_near, reciprocal_of_power};
 use crate::{Status, SubAlgorithm};
@@ -144,11 +144,11 @@ pub(crate) fn gjk<B: TracedSupport>(
 ) -> End {
     let end = descend(state, body, &frame, &options, known, observer);
     // Numbers out of range determine nothing.
-    if !(frame.error < <B::Vector as Vector>::Scalar::infinity()) {
+    if !(frame.error < ScalarFrom::<B>::infinity()) {
         return End::Stalled;
     }
     // If no progress is possible any more, the cores may be within rounding of touching.
-    if end == End::Stalled && state.length < <B::Vector as Vector>::Scalar::infinity() {
+    if end == End::Stalled && state.length < ScalarFrom::<B>::infinity() {
         state.ensure_measured();
         if state.length - frame.radius <= frame.noise {
             return End::Overlap;
