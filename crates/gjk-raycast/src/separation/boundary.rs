@@ -10,7 +10,8 @@ use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::cores::Vertex;
-use crate::double::{Vec3, cross, dot};
+use super::faces::turned_right;
+use crate::double::{LEAST, Vec3, cross, dot};
 use crate::simplex::{MAX_POINTS, nearest_face};
 
 /// Corners of a facet, of which a polygon's has two and a polyhedron's three.
@@ -23,9 +24,6 @@ const TILT: f64 = 8.0;
 /// this, and if distances need not be accurate to the last digit so many ε, in units of their accuracy.
 const ACUTE: f64 = 0.125;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-
-/// Squares below this may have underflowed.
-const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
 /// The most facets of a walk to one that a point is beyond.
 const MAX_WALK: usize = 32;
@@ -516,9 +514,7 @@ fn sliver_normal<V: Vector>(corner: V) -> (V, V::Scalar) {
 
 /// The unit normal of an edge, to the right of it, and its rounding for a point at unit distance.
 fn edge_normal<V: Vector>([a, b, _]: [V; MAX_CORNERS]) -> (V, V::Scalar) {
-    let edge = b - a;
-    let turned = [edge.get(1), -edge.get(0)];
-    let normal = V::from_fn(|i| turned[i]).unit();
+    let normal = turned_right(b - a).unit();
     normal.map_or_else(|| sliver_normal(a), |normal| (normal, V::Scalar::from_f64(TILT) * V::Scalar::EPSILON))
 }
 

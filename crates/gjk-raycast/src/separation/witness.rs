@@ -127,13 +127,8 @@ impl<V: Vector> MetPoint<V> {
     #[inline(never)]
     pub(super) fn new(cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
         state.ensure_measured();
-        let (mut point, mut points, mut sum) = (V::ZERO, PointPair::default(), V::Scalar::ZERO);
-        for (&corner, (weight, pair)) in state.simplex.points().iter().zip(state.simplex.weighted()) {
-            points = points.plus(pair, weight);
-            point += corner * weight;
-            sum += weight;
-        }
-        let point = point / sum;
+        let (points, sum) = (state.simplex.weighted_witness(), state.simplex.weight());
+        let point = state.simplex.weighted_point() / sum;
         let is_known = state.length.is_finite() && sum > V::Scalar::ZERO;
         Self { point, points, reached: if is_known { cores.greatest_length(point) } else { V::Scalar::infinity() } }
     }

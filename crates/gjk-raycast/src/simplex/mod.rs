@@ -108,11 +108,12 @@ impl<V: Vector> Simplex<V> {
 
     /// The weighted sum of the points.
     pub(crate) fn weighted_point(&self) -> V {
-        let mut sum = V::ZERO;
-        for (&point, &weight) in self.points().iter().zip(&self.weights) {
-            sum += point * weight;
-        }
-        sum
+        self.points().iter().zip(&self.weights).fold(V::ZERO, |sum, (&point, &weight)| sum + point * weight)
+    }
+
+    /// The sum of the weights.
+    pub(crate) fn weight(&self) -> V::Scalar {
+        self.weighted().fold(V::Scalar::ZERO, |sum, (weight, _)| sum + weight)
     }
 
     /// The weighted sum of the witnesses.
@@ -122,11 +123,7 @@ impl<V: Vector> Simplex<V> {
 
     /// The mean of the points.
     pub(crate) fn middle(&self) -> V {
-        let mut sum = V::ZERO;
-        for &point in self.points() {
-            sum += point;
-        }
-        sum / V::Scalar::from_f64(self.len as f64)
+        self.points().iter().fold(V::ZERO, |sum, &point| sum + point) / V::Scalar::from_f64(self.len as f64)
     }
 
     /// The directions along which the points are support points.
