@@ -48,7 +48,6 @@ pub(crate) trait CastBody: TracedSupport {
 pub(crate) struct Measures<V: Vector> {
     /// The point to which positions are relative.
     pub(crate) origin: V,
-    /// The radius around the core.
     pub(crate) radius: V::Scalar,
     /// A bound on the length of all vectors that support points of the core are computed from.
     pub(crate) extent: V::Scalar,
@@ -58,7 +57,6 @@ pub(crate) struct Measures<V: Vector> {
     pub(crate) error: V::Scalar,
 }
 
-/// One shape.
 pub(crate) struct Single<'a, S: SupportMap + ?Sized> {
     shape: &'a S,
     core: Core<S::Vector>,
@@ -137,7 +135,6 @@ impl Of {
 pub(crate) trait Shapes {
     type Vector: Vector;
 
-    /// Both cores.
     fn cores(&self) -> [Core<Self::Vector>; 2];
     /// The support points of both cores, each along a direction of its own.
     fn support_points(&self, along: [Self::Vector; 2], hints: &mut [Hint; 2]) -> [Aligned<Self::Vector>; 2];
@@ -305,18 +302,15 @@ impl<T: Shapes + ?Sized> Pair<'_, T> {
         Self { swept: radius, ..self }
     }
 
-    /// Forgets the hints for support points.
     pub(crate) fn forget_hints(&mut self) {
         self.hints = [Hint::new(), Hint::new()];
     }
 
-    /// The sum of the radii.
     #[inline(always)]
     pub(crate) fn radius(&self) -> ScalarIn<T> {
         self.core_a.radius + self.core_b.radius
     }
 
-    /// The sum of the extents.
     #[inline(always)]
     pub(crate) fn extent(&self) -> ScalarIn<T> {
         self.core_a.extent + self.core_b.extent

@@ -166,7 +166,6 @@ impl<H, V> Outcome<H, V> {
         }
     }
 
-    /// The outcome with the hit converted.
     pub(crate) fn map<G>(self, of: impl FnOnce(H) -> G) -> Outcome<G, V> {
         match self {
             Self::Hit(hit) => Outcome::Hit(of(hit)),

@@ -86,9 +86,9 @@ impl<V: Vector> HalfSpace<V> {
 }
 
 impl<V: Vector> Plane<V> {
-    /// The time, counted from zero, at which a point at a height that sinks at a speed lands, if it does before `end`. If it may be in the
-    /// half-space already, the answer is a hit at once. This hit is certain if the point is inside by more than its
-    /// error, or certainly sinks.
+    /// When a point at a height, which sinks at a speed, lands, counted from zero, if it lands before `end`. If it may be
+    /// in the half-space already, the answer is a hit at once. This hit is certain if the point is inside by more than
+    /// its error, or certainly sinks.
     pub(super) fn crossing(
         &self,
         height: Level<V::Scalar>,

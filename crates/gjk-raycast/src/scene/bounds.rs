@@ -10,7 +10,6 @@ use smallvec::SmallVec;
 
 use crate::{HalfSpace, MotionCastOptions, MovingBall, Trajectory};
 
-/// The most parts that a motion is cut into.
 const MAX_PARTS: usize = 16;
 
 /// How much larger than the ball of the shape that of a part may be before the motion is cut into more parts.
@@ -139,7 +138,6 @@ impl<V: Vector> CoarseBound for CoarseMovingBalls<V> {
 
 /// A lower bound on the distance of a box from a half-space: that of its lowest corner.
 pub(super) struct HeightBound<V: Vector> {
-    /// The unit normal.
     normal: V,
     /// The offset with room for its rounding.
     offset: V::Scalar,

@@ -36,7 +36,6 @@ const FACETS: usize = 2 * VERTICES;
 /// The corner after each, and the one after that.
 const NEXT: [usize; 4] = [1, 2, 0, 1];
 
-/// No facet.
 const NONE: u16 = u16::MAX;
 
 /// A facet: an edge of a polygon or a triangle of a polyhedron, its corners counterclockwise as seen from outside.
@@ -45,7 +44,6 @@ pub(super) struct Facet<V: Vector> {
     corners: [u16; MAX_CORNERS],
     /// The facets across the ridges opposite to each corner.
     across: [u16; MAX_CORNERS],
-    /// The unit outward normal.
     pub(super) normal: V,
     /// How far, by the rounding of the normal, a point at unit distance may seem above or below the facet.
     tilt: V::Scalar,
@@ -212,7 +210,6 @@ impl<V: Vector> Boundary<V> {
         true
     }
 
-    /// Empties the polytope.
     #[cold]
     fn clear(&mut self) {
         self.vertices.clear();
@@ -221,7 +218,6 @@ impl<V: Vector> Boundary<V> {
         (self.insertions, self.last) = (0, 0);
     }
 
-    /// Adds a vertex, and room for so many facets.
     #[inline(never)]
     fn grow(&mut self, &vertex: &Vertex<V>, facets: usize) {
         let none = [NONE; MAX_CORNERS];
@@ -265,19 +261,16 @@ impl<V: Vector> Boundary<V> {
         self.facets[index].corners
     }
 
-    /// The vertex at a corner.
     #[inline]
     pub(super) fn vertex(&self, corner: u16) -> Vertex<V> {
         self.vertices[usize::from(corner)].vertex
     }
 
-    /// The points of the vertices of a facet.
     #[inline]
     pub(super) fn corner_points(&self, index: usize) -> [V; MAX_CORNERS] {
         points(&self.vertices, self.facets[index].corners)
     }
 
-    /// The number of facets.
     pub(super) fn len(&self) -> usize {
         self.inner.iter().filter(|inner| inner.is_finite()).count()
     }

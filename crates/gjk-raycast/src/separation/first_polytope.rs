@@ -124,7 +124,6 @@ impl<V: Vector> AffineSpan<V> {
         v
     }
 
-    /// A unit vector across the span.
     fn across(&self) -> V {
         if V::DIM == 3 && self.len == 3 {
             return cross(self.basis[0], self.basis[1]).unit().unwrap_or_else(|| V::axis(0));

@@ -231,7 +231,6 @@ fn reach_closely<V: Vector>(
 }
 
 impl<V: Vector> Separation<V> {
-    /// By GJK alone.
     #[inline(always)]
     fn of_gjk(cores: &Cores<'_, V>, state: &mut Gjk<V>, end: End) -> Self {
         let MetPoint { points, reached, .. } = MetPoint::new(cores, state);
@@ -280,7 +279,6 @@ impl<V: Vector> Separation<V> {
         }
     }
 
-    /// In closed form.
     fn of_closed_form(ClosedForm { u, depth, inner, outer, points }: ClosedForm<V>) -> Self {
         Self { u, depth, inner, outer, axis: -u, points, overlap: None, status: Status::Converged, unexpanded: 0 }
     }
@@ -334,7 +332,6 @@ impl<V: Vector> Separation<V> {
         }
     }
 
-    /// The status of the search, by its bounds.
     #[inline(always)]
     fn status(&self, is_bounded: bool, is_narrow: bool) -> Status {
         match self.status {
@@ -352,7 +349,6 @@ impl<V: Vector> Separation<V> {
         [core_a.origin + a * scale + self.u * from, core_b.origin + b * scale - self.u * to]
     }
 
-    /// The signed distance.
     #[inline]
     pub(crate) fn signed_distance(&self, cores: &Cores<'_, V>) -> SignedDistance<V> {
         let (lower, upper, is_narrow) = self.bounds(cores);

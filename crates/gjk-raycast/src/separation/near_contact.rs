@@ -55,7 +55,6 @@ pub(crate) struct NearContact<V: Vector> {
 }
 
 impl<V: Vector> NearContact<V> {
-    /// Whether the bodies are certainly apart.
     pub(crate) fn is_separated(&self) -> bool {
         self.lower > V::Scalar::ZERO
     }
@@ -86,7 +85,6 @@ impl<V: Vector> NearContact<V> {
         self.upper - self.gap <= error + error
     }
 
-    /// The same for the bodies in the other order.
     fn reversed(self) -> Self {
         let frame = Frame { offset: -self.frame.offset, ..self.frame };
         Self { frame, points: self.points.reversed(), normal: -self.normal, ..self }
@@ -196,7 +194,6 @@ struct SupportPlane<V: Vector> {
 }
 
 impl<V: Vector> SupportPlane<V> {
-    /// It is certainly as far as this.
     fn certain(&self) -> V::Scalar {
         self.level - self.error
     }

@@ -22,7 +22,6 @@ pub(crate) struct FromContact<V: Vector> {
     pub(crate) along: V::Scalar,
     /// A bound on its length across that direction.
     pub(crate) across: V::Scalar,
-    /// A bound on its length.
     pub(crate) length: V::Scalar,
 }
 

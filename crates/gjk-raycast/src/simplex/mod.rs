@@ -57,7 +57,6 @@ impl<V: Vector> Simplex<V> {
         self.len = index + 1;
     }
 
-    /// Removes the newest point.
     pub(crate) fn pop(&mut self) {
         self.len = self.len.saturating_sub(1);
     }
@@ -76,7 +75,6 @@ impl<V: Vector> Simplex<V> {
         self.weigh(weights);
     }
 
-    /// Gives the points weights.
     #[inline]
     pub(crate) fn weigh(&mut self, weights: [V::Scalar; MAX_POINTS]) {
         self.weights = weights;
@@ -106,43 +104,35 @@ impl<V: Vector> Simplex<V> {
         (&self.points, (self.len + MAX_POINTS - 1) % MAX_POINTS)
     }
 
-    /// The weighted sum of the points.
     pub(crate) fn weighted_point(&self) -> V {
         self.points().iter().zip(&self.weights).fold(V::ZERO, |sum, (&point, &weight)| sum + point * weight)
     }
 
-    /// The sum of the weights.
     pub(crate) fn weight(&self) -> V::Scalar {
         self.weighted().fold(V::Scalar::ZERO, |sum, (weight, _)| sum + weight)
     }
 
-    /// The weighted sum of the witnesses.
     pub(crate) fn weighted_witness(&self) -> PointPair<V> {
         self.weighted().fold(PointPair::default(), |sum, (weight, witness)| sum.plus(witness, weight))
     }
 
-    /// The mean of the points.
     pub(crate) fn middle(&self) -> V {
         self.points().iter().fold(V::ZERO, |sum, &point| sum + point) / V::Scalar::from_f64(self.len as f64)
     }
 
-    /// The directions along which the points are support points.
     pub(crate) fn along(&self) -> &[V] {
         &self.along[..self.len]
     }
 
-    /// The points of the shapes that the points come from.
     pub(crate) fn witnesses(&self) -> &[PointPair<V>] {
         &self.witnesses[..self.len]
     }
 
-    /// The weights and witnesses.
     pub(crate) fn weighted(&self) -> impl Iterator<Item = (V::Scalar, PointPair<V>)> + '_ {
         (0..self.len).map(|i| (self.weights[i], self.witnesses[i]))
     }
 }
 
-/// Some of the points of a simplex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Face(u8);
 
@@ -152,7 +142,6 @@ pub(crate) fn faces(len: usize, most: usize) -> impl Iterator<Item = Face> {
 }
 
 impl Face {
-    /// The face with these corners.
     #[inline]
     pub(crate) fn of_corners(corners: &[usize]) -> Self {
         let mut bits = 0;
@@ -162,7 +151,6 @@ impl Face {
         Self(bits)
     }
 
-    /// The number of corners.
     pub(crate) fn len(self) -> usize {
         self.0.count_ones() as usize
     }

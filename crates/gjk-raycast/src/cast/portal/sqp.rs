@@ -104,7 +104,6 @@ fn piece<V: Vector>(
     }
 }
 
-/// The progress of the steps.
 struct Steps<S> {
     /// The bracket that the last step predicted.
     gap: S,
@@ -122,7 +121,6 @@ impl<S: Scalar> Steps<S> {
             if same_piece { self.error_weight * S::from_f64(8.0) } else { power_of_two(-self.failures) };
     }
 
-    /// The next plane, if there is one.
     #[inline(always)]
     fn next<V: Vector<Scalar = S>>(
         &mut self,
@@ -158,7 +156,6 @@ impl<V: Vector> OnLine<V> {
         Self { corners, weights: [V::Scalar::ZERO; 3], high: V::Scalar::infinity() }
     }
 
-    /// Its plane.
     fn alpha(&self) -> Alpha<V::Scalar> {
         let [p, q, s] = &self.corners;
         RayPlane::through([p, q, s]).alpha()
