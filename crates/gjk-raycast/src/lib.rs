@@ -140,12 +140,10 @@ mod derivative;
 mod distance;
 mod double;
 mod extra;
-mod free_step;
 mod gjk;
 mod half_space;
 mod intersects;
 mod iterative_ray_cast;
-mod level;
 mod linear_cast;
 mod linkage;
 mod motion;
@@ -162,7 +160,6 @@ mod separation;
 mod shape;
 mod signed_distance;
 mod simplex;
-mod start_in_contact;
 mod symmetric;
 mod unit;
 mod warm_start;
@@ -179,8 +176,7 @@ pub use derivative::{
     ClosestFeatures, ClosestVelocities, ImpactGradient, PairGradient, PairHessian, RayCastGradient,
     RigidMotionGradient, Smoothness,
 };
-pub use distance::{distance, distance_with, map_distances_into};
-pub use free_step::FreeStep;
+pub use distance::{FreeStep, distance, distance_with, map_distances_into};
 pub use half_space::HalfSpace;
 pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};

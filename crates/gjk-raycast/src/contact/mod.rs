@@ -15,6 +15,7 @@ use manifold::manifold;
 pub(crate) use manifold::manifold_over_plane;
 pub(crate) use outline::{ContactPlane, Corner, Ellipse, Outline};
 pub use result::{Contact, ContactPoint};
+pub(crate) use surface::Level;
 
 /// The contact of two shapes; `None` if they are farther apart than `within`. The options are those of the signed
 /// distance, but `within` replaces the limit; with NaN there is no contact. The normal of the last frame is a good

@@ -3,7 +3,7 @@
 use convex_support::{Core, CoreKind, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::span::{DifferenceSpan, Span};
+use super::overlap::{DifferenceSpan, Span};
 use crate::contact::Outline;
 use crate::shape::Shape;
 use crate::symmetric::Symmetric;

@@ -6,7 +6,7 @@ use num_traits::Float as _;
 
 use super::HalfSpace;
 use super::plane::{Lowest, Plane};
-use crate::level::Level;
+use crate::contact::Level;
 use crate::{
     Cast, Impact, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCast, RayCastError, RayCastOptions,
     RayHit, StartInContact, Status,

@@ -6,7 +6,7 @@ use convex_support::{Core, Hint, Rounding, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use super::HalfSpace;
-use crate::level::Level;
+use crate::contact::Level;
 use crate::unit::{power_of_two_near, reciprocal_of_power};
 
 /// The plane of a half-space. Its normal and offset are those given, in units of a power of two near the normal's

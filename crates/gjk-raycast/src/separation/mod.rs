@@ -8,7 +8,6 @@ mod boundary;
 mod cores;
 mod expansion;
 mod faces;
-mod first_polytope;
 mod near_contact;
 mod newton;
 mod room;

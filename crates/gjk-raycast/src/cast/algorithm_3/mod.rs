@@ -10,7 +10,6 @@
 //!   the ray, with the whole line for `x`.
 //! - A radius is never made of support points: the simplex is swept by it.
 
-mod newton;
 mod refine;
 mod swept_simplex;
 
