@@ -121,15 +121,6 @@ pub(crate) enum Of {
     B,
 }
 
-impl Of {
-    fn other(self) -> Self {
-        match self {
-            Self::A => Self::B,
-            Self::B => Self::A,
-        }
-    }
-}
-
 /// Two shapes for a search: behind one pointer, so that it is compiled once for all shapes, and a support point of
 /// their difference is one call.
 pub(crate) trait Shapes {
@@ -157,8 +148,7 @@ pub(crate) trait Shapes {
 #[repr(align(16))]
 pub(crate) struct Aligned<V>(pub(crate) V);
 
-/// Two shapes of known types, with line crossings or without. The closed forms of line crossings are as much code as
-/// the whole search for a distance, so they are left out where they are not needed.
+/// Two shapes of known types, with line crossings or, where those are not needed, [without](WithoutLines).
 pub(crate) struct Both<'a, A: ?Sized, B: ?Sized, const LINES: bool = false> {
     a: WithoutLines<'a, A>,
     b: WithoutLines<'a, B>,
@@ -175,7 +165,7 @@ impl<'a, A: ?Sized, B: ?Sized, const LINES: bool> Both<'a, A, B, LINES> {
     /// Converts one of the two to the order of the call.
     #[inline(always)]
     fn named(&self, of: Of) -> Of {
-        if self.is_swapped { of.other() } else { of }
+        if self.is_swapped == (of == Of::A) { Of::B } else { Of::A }
     }
 }
 

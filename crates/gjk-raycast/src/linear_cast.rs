@@ -185,23 +185,18 @@ fn answer<V: Vector>(
 ) -> LinearCast<V> {
     let zero = V::Scalar::ZERO;
     let target = options.target_distance.max(zero);
-    let mut answer = LinearCast {
-        outcome: Outcome::Undecided,
-        lower: cast.lower,
-        upper: cast.upper,
-        status: cast.status,
-        iterations: cast.iterations,
+    let outcome = match &cast.outcome {
+        Outcome::Hit(hit) => Outcome::Hit(hit_on_the_way(hit, cast.scale, cores, motion.velocity_b)),
+        Outcome::Miss(miss) => Outcome::Miss(Miss { axis: -miss.axis }),
+        Outcome::Undecided => Outcome::Undecided,
     };
+    let &ObstacleCast { lower, upper, status, iterations, .. } = cast;
+    let mut answer = LinearCast { outcome, lower, upper, status, iterations };
     if motion.velocity_a == motion.velocity_b && answer.upper > zero {
         // What rests does not come to where a ray from its start would be.
         answer.upper = V::Scalar::infinity();
     }
     let start = StartingPair { a, b, target };
-    answer.outcome = match &cast.outcome {
-        Outcome::Hit(hit) => Outcome::Hit(hit_on_the_way(hit, cast.scale, cores, motion.velocity_b)),
-        Outcome::Miss(miss) => Outcome::Miss(Miss { axis: -miss.axis }),
-        Outcome::Undecided => Outcome::Undecided,
-    };
     // Where only deeper motions count, what is known of the start is looked for below.
     if let Outcome::Hit(Impact { time, normal: None, .. }) = answer.outcome
         && time == zero

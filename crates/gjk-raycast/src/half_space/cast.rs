@@ -64,15 +64,14 @@ impl<V: Vector> HalfSpace<V> {
         options: LinearCastOptions<V>,
     ) -> Result<LinearCast<V>, RayCastError> {
         motion.check(&options)?;
-        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+        let zero = V::Scalar::ZERO;
         let plane = self.plane();
         let Lowest { height, point } = plane.lowest(shape, options.target_distance.max(zero));
         let sinking = plane.sinking([motion.velocity_a, -motion.velocity_b]);
         let goes_deeper = options.start_in_contact == StartInContact::IfDeeper;
         if goes_deeper && height.least() <= zero && !(sinking.most() > zero) {
             let outcome = Outcome::Miss(Miss { axis: plane.unit });
-            let (lower, upper, status) = (infinity, infinity, Status::Converged);
-            return Ok(LinearCast { outcome, lower, upper, status, iterations: 1 });
+            return Ok(LinearCast::without_upper(outcome, V::Scalar::infinity(), Status::Converged, 1));
         }
         let Cast { outcome, lower, upper, status, .. } = plane.crossing(height, sinking, options.max_time);
         let has_normal = height.most() >= zero || goes_deeper;
@@ -96,9 +95,8 @@ impl<V: Vector> Plane<V> {
         end: V::Scalar,
     ) -> Cast<V::Scalar, V> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
-        let ended = |outcome, lower, status| Cast { outcome, lower, upper: infinity, status, iterations: 0 };
-        let miss = ended(Outcome::Miss(Miss { axis: self.unit }), infinity, Status::Converged);
-        let undecided = |lower| ended(Outcome::Undecided, lower, Status::Stalled);
+        let miss = |lower| Cast::without_upper(Outcome::Miss(Miss { axis: self.unit }), lower, Status::Converged, 0);
+        let undecided = |lower| Cast::without_upper(Outcome::Undecided, lower, Status::Stalled, 0);
         let hit = |time, lower, upper| {
             let outcome = Outcome::Hit(time);
             let status = Status::Converged.of(&outcome, upper < infinity);
@@ -109,7 +107,7 @@ impl<V: Vector> Plane<V> {
             return undecided(zero);
         }
         if end < zero {
-            return miss;
+            return miss(infinity);
         }
         // The quotient loses half an ε.
         let latest = |height: V::Scalar| {
@@ -121,12 +119,12 @@ impl<V: Vector> Plane<V> {
             return hit(zero, zero, upper);
         }
         if !(sinking.most() > zero) {
-            return miss;
+            return miss(infinity);
         }
         let earliest = height.least() / sinking.most();
         let lower = earliest - roundings(2.0, earliest);
         if lower > end {
-            return miss;
+            return miss(infinity);
         }
         if !(sinking.least() > zero) {
             return undecided(lower);
@@ -134,7 +132,7 @@ impl<V: Vector> Plane<V> {
         // Whether a hit at the very end counts is decided by the returned time.
         let time = height.value / sinking.value;
         if !(time <= end) {
-            return Cast { lower, ..miss };
+            return miss(lower);
         }
         hit(time, lower, latest(height.most()))
     }
