@@ -248,7 +248,7 @@ impl<S: Scalar> Progress<S> {
 mod tests {
     use convex_support::glam::{DVec3, Vec3};
 
-    use super::rounding;
+    use super::*;
 
     /// In single precision, `n·(a − b + o)/|n|` is within [`rounding`] of its value in double precision.
     #[test]
@@ -273,11 +273,6 @@ mod tests {
         // The bound is that of the worst case, and not much larger.
         assert!(worst > 0.05, "{worst}");
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
 
     #[test]
     fn progress_ends_after_steps_without_a_gain_and_at_what_is_no_number() {

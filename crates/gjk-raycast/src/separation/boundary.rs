@@ -577,7 +577,7 @@ fn is_beyond<V: Vector>(corners: &[V], point: V) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use convex_support::glam::DVec3;
+    use convex_support::glam::{DVec2, DVec3};
 
     use super::*;
     use crate::body::PointPair;
@@ -621,13 +621,6 @@ mod tests {
         let square = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y].map(vertex);
         assert!(!Boundary::new(f64::EPSILON).begin(&square, 0.0));
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use convex_support::glam::{DVec2, DVec3};
-
-    use super::is_beyond;
 
     /// The points are so near to the line `y = x` that the determinant rounds to zero, or to the other sign.
     #[test]
