@@ -85,9 +85,9 @@ impl<V: Vector> HalfSpace<V> {
 }
 
 impl<V: Vector> Plane<V> {
-    /// When a point at a height, which sinks at a speed, lands, counted from zero, if it lands before `end`. If it may be
-    /// in the half-space already, the answer is a hit at once. This hit is certain if the point is inside by more than
-    /// its error, or certainly sinks.
+    /// When a point at a height, which sinks at a speed, lands, counted from zero, if it lands before `end`. If it may
+    /// be in the half-space already, the answer is a hit at once. This hit is certain if the point is inside by more
+    /// than its error, or certainly sinks.
     pub(super) fn crossing(
         &self,
         height: Level<V::Scalar>,
