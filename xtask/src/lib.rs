@@ -30,8 +30,8 @@ struct Readme;
 
 /// Compiles and runs the examples of the note on porting, which ask parry the same.
 #[cfg(all(doctest, feature = "parry"))]
-#[doc = include_str!("../../docs/porting-from-parry.md")]
-struct PortingFromParry;
+#[doc = include_str!("../../docs/porting.md")]
+struct Porting;
 
 /// Compiles and runs the columns of the note on choosing a method.
 #[cfg(doctest)]

@@ -1,5 +1,5 @@
 //! Depths and manifolds of the bodies of W3b that overlap, in `f64`: nanoseconds and support points per query, as the
-//! table in `docs/contact.md` has them.
+//! table in `docs/distance.md` has them.
 #![allow(clippy::print_stdout, reason = "printing is what it is for")]
 
 use std::time::Duration;
