@@ -86,7 +86,7 @@ impl<S: SupportMap> Linkage<S> {
     ///
     /// # Errors
     /// [`LinkageError`] if a value at an end of an edge is not finite, a bound is negative or not finite, or an option
-    /// is NaN. Values in between that are not finite leave the path undecided.
+    /// is NaN. Values in between that are not finite contradict the bounds: they end no search, and prove nothing.
     pub fn path_along<O: SupportMap<Vector = S::Vector>, T: JointTrajectory<Scalar = ScalarOf<S>>>(
         &self,
         edges: &[T],
