@@ -182,8 +182,8 @@ pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{linear_cast, linear_cast_with};
 pub use linkage::{
-    FreeBox, FreeInterval, Joint, JointBox, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, Met, Path,
-    PathContact, PathWorkspace,
+    FreeBox, FreeInterval, Joint, JointBounds, JointBox, JointBoxOutcome, JointKind, JointState, JointTrajectory, Link,
+    Linkage, LinkageError, Met, Path, PathContact, PathWorkspace,
 };
 pub use motion::{
     ChainMotion, Displacement, MovingBall, Pose, RigidMotion, Trajectory, TurningPlane, motion_cast, motion_cast_with,
