@@ -6,7 +6,6 @@
 
 use std::ffi::OsString;
 use std::io::{self, Write};
-use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
 use clap::{Args, Parser, Subcommand};
@@ -65,15 +64,7 @@ enum Task {
     Docs,
     /// Measure what importing each crate alone costs, and write the table of `docs/choosing-a-method.md`: packages,
     /// build time, code size.
-    Footprint {
-        /// Where the programs are built; emptied first.
-        #[arg(long, value_name = "FOLDER", default_value = "target/footprint")]
-        output: PathBuf,
-        /// Measure what one question costs a Cortex-M4 instead: code, stack, memory and instructions. Needs
-        /// `rustup target add thumbv7em-none-eabihf` and `qemu-system-arm`.
-        #[arg(long)]
-        microcontroller: bool,
-    },
+    Footprint(footprint::Choice),
     /// Move a robot along its trajectory among obstacles (a study).
     #[command(disable_help_flag = true)]
     Scene(Passed),
@@ -115,7 +106,7 @@ fn main() -> ExitCode {
         Task::Bits(choice) => bits::run(&choice),
         Task::Museum(choice) => museum::run(choice),
         Task::Docs => docs::run(),
-        Task::Footprint { output, microcontroller } => footprint::run(&output, microcontroller),
+        Task::Footprint(choice) => footprint::run(&choice),
         Task::Judge(_) | Task::Growth(_) => study("peers"),
         Task::Scene(_) | Task::Matrix(_) | Task::Sweep(_) | Task::Book2d(_) | Task::Render(_) => study(""),
     }

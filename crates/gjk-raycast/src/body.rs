@@ -1,12 +1,16 @@
 //! Shapes for the algorithms: a core and a radius, relative to the shape's origin and in [units](crate::unit) of its
 //! size.
 
-use convex_support::{CertainCrossing, Core, CoreKind, Hint, LineQuery, Scalar, SupportMap, Vector};
+use convex_support::{CertainCrossing, Core, CoreKind, Hint, LineQuery, Scalar, ScalarOf, SupportMap, Vector};
 
 use crate::segments;
 use crate::shape::{Shape, WithoutLines};
 use crate::symmetric::Symmetric;
 use crate::unit::{is_moderate, reciprocal_of_power};
+
+/// The scalars of a [`TracedSupport`], and of two [`Shapes`].
+pub(crate) type ScalarFrom<B> = <<B as TracedSupport>::Vector as Vector>::Scalar;
+type ScalarIn<T> = <<T as Shapes>::Vector as Vector>::Scalar;
 
 /// The support map of a core, whose points keep the points that they come from: all that GJK needs of a body.
 pub(crate) trait TracedSupport {
@@ -17,11 +21,7 @@ pub(crate) trait TracedSupport {
     fn support(&mut self, direction: Self::Vector) -> (Self::Vector, PointPair<Self::Vector>);
     /// The Hessian `H` of the support value, the rate at which the support point moves as the direction turns, for two
     /// changes `u` and `w`: the entries `u·Hu`, `u·Hw` and `w·Hw`.
-    fn hessian(
-        &self,
-        direction: Self::Vector,
-        changes: [Self::Vector; 2],
-    ) -> Symmetric<<Self::Vector as Vector>::Scalar>;
+    fn hessian(&self, direction: Self::Vector, changes: [Self::Vector; 2]) -> Symmetric<ScalarFrom<Self>>;
     /// Whether the Hessian may be nonzero.
     fn is_curved(&self) -> bool;
 }
@@ -31,11 +31,7 @@ pub(crate) trait CastBody: TracedSupport {
     /// Where a line of the world [certainly enters](SupportMap::certain_crossing) the body.
     fn certain_crossing(&self, line: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>>;
     /// The part of the [Hessian](TracedSupport::hessian) that comes from the first shape.
-    fn hessian_of_first(
-        &self,
-        direction: Self::Vector,
-        changes: [Self::Vector; 2],
-    ) -> Symmetric<<Self::Vector as Vector>::Scalar> {
+    fn hessian_of_first(&self, direction: Self::Vector, changes: [Self::Vector; 2]) -> Symmetric<ScalarFrom<Self>> {
         self.hessian(direction, changes)
     }
     /// The points of the shapes that a point of the core comes from, if a crossing is known.
@@ -44,7 +40,7 @@ pub(crate) trait CastBody: TracedSupport {
     /// that of the first shape alone, because subtracting the other's would round.
     fn measures(&self) -> Measures<Self::Vector>;
     /// Sets the unit to the given power of two.
-    fn set_scale(&mut self, scale: <Self::Vector as Vector>::Scalar);
+    fn set_scale(&mut self, scale: ScalarFrom<Self>);
 }
 
 /// The lengths that all errors of a body are relative to, in the world's unit.
@@ -52,7 +48,6 @@ pub(crate) trait CastBody: TracedSupport {
 pub(crate) struct Measures<V: Vector> {
     /// The point to which positions are relative.
     pub(crate) origin: V,
-    /// The radius around the core.
     pub(crate) radius: V::Scalar,
     /// A bound on the length of all vectors that support points of the core are computed from.
     pub(crate) extent: V::Scalar,
@@ -62,12 +57,11 @@ pub(crate) struct Measures<V: Vector> {
     pub(crate) error: V::Scalar,
 }
 
-/// One shape.
 pub(crate) struct Single<'a, S: SupportMap + ?Sized> {
     shape: &'a S,
     core: Core<S::Vector>,
     hint: Hint,
-    per_unit: <S::Vector as Vector>::Scalar,
+    per_unit: ScalarOf<S>,
 }
 
 impl<'a, S: SupportMap + ?Sized> Single<'a, S> {
@@ -88,7 +82,7 @@ impl<S: SupportMap + ?Sized> TracedSupport for Single<'_, S> {
     }
 
     #[inline(always)]
-    fn hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> Symmetric<<S::Vector as Vector>::Scalar> {
+    fn hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> Symmetric<ScalarOf<S>> {
         Symmetric::of(self.shape.core_support_hessian(direction, changes).map(|entry| entry * self.per_unit))
     }
 
@@ -115,7 +109,7 @@ impl<S: SupportMap + ?Sized> CastBody for Single<'_, S> {
         Measures { origin, radius, extent, rolling_radius: radius + rolling_radius, error }
     }
 
-    fn set_scale(&mut self, scale: <S::Vector as Vector>::Scalar) {
+    fn set_scale(&mut self, scale: ScalarOf<S>) {
         self.per_unit = reciprocal_of_power(scale);
     }
 }
@@ -127,31 +121,17 @@ pub(crate) enum Of {
     B,
 }
 
-impl Of {
-    fn other(self) -> Self {
-        match self {
-            Self::A => Self::B,
-            Self::B => Self::A,
-        }
-    }
-}
-
 /// Two shapes for a search: behind one pointer, so that it is compiled once for all shapes, and a support point of
 /// their difference is one call.
 pub(crate) trait Shapes {
     type Vector: Vector;
 
-    /// Both cores.
     fn cores(&self) -> [Core<Self::Vector>; 2];
     /// The support points of both cores, each along a direction of its own.
     fn support_points(&self, along: [Self::Vector; 2], hints: &mut [Hint; 2]) -> [Aligned<Self::Vector>; 2];
-    /// As [`SupportMap::core_support_hessian`] of one of them.
-    fn support_hessian(
-        &self,
-        of: Of,
-        direction: Self::Vector,
-        changes: [Self::Vector; 2],
-    ) -> [<Self::Vector as Vector>::Scalar; 3];
+    /// As [`SupportMap::core_support_hessian`] of both, each along a direction of its own. In one call: for each call
+    /// that gets them, the changes are copied, and the copy waits until they are in the cache.
+    fn support_hessians(&self, along: [Self::Vector; 2], changes: [Self::Vector; 2]) -> [[ScalarIn<Self>; 3]; 2];
     /// As [`SupportMap::core_closest_point`] of one of them.
     fn closest_point(&self, of: Of, x: Self::Vector) -> Option<Self::Vector>;
     /// As [`SupportMap::certain_crossing`] of one of them.
@@ -169,8 +149,7 @@ pub(crate) trait Shapes {
 #[repr(align(16))]
 pub(crate) struct Aligned<V>(pub(crate) V);
 
-/// Two shapes of known types, with line crossings or without. The closed forms of line crossings are as much code as
-/// the whole search for a distance, so they are left out where they are not needed.
+/// Two shapes of known types, with line crossings or, where those are not needed, [without](WithoutLines).
 pub(crate) struct Both<'a, A: ?Sized, B: ?Sized, const LINES: bool = false> {
     a: WithoutLines<'a, A>,
     b: WithoutLines<'a, B>,
@@ -187,7 +166,7 @@ impl<'a, A: ?Sized, B: ?Sized, const LINES: bool> Both<'a, A, B, LINES> {
     /// Converts one of the two to the order of the call.
     #[inline(always)]
     fn named(&self, of: Of) -> Of {
-        if self.is_swapped { of.other() } else { of }
+        if self.is_swapped == (of == Of::A) { Of::B } else { Of::A }
     }
 }
 
@@ -217,16 +196,11 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
     }
 
     #[inline(always)]
-    fn support_hessian(
-        &self,
-        of: Of,
-        direction: A::Vector,
-        changes: [A::Vector; 2],
-    ) -> [<A::Vector as Vector>::Scalar; 3] {
-        match self.named(of) {
-            Of::A => self.a.0.core_support_hessian(direction, changes),
-            Of::B => self.b.0.core_support_hessian(direction, changes),
-        }
+    fn support_hessians(&self, [along_a, along_b]: [A::Vector; 2], changes: [A::Vector; 2]) -> [[ScalarOf<A>; 3]; 2] {
+        let (along_a, along_b) = if self.is_swapped { (along_b, along_a) } else { (along_a, along_b) };
+        let a = self.a.0.core_support_hessian(along_a, changes);
+        let b = self.b.0.core_support_hessian(along_b, changes);
+        if self.is_swapped { [b, a] } else { [a, b] }
     }
 
     #[inline(always)]
@@ -287,11 +261,11 @@ pub(crate) struct Pair<'a, T: Shapes + ?Sized> {
     pub(crate) core_a: &'a Core<T::Vector>,
     pub(crate) core_b: &'a Core<T::Vector>,
     hints: [Hint; 2],
-    per_unit: <T::Vector as Vector>::Scalar,
+    per_unit: ScalarIn<T>,
     /// The radius of a ball that the difference is swept by; the first core's radius includes it.
-    swept: <T::Vector as Vector>::Scalar,
+    swept: ScalarIn<T>,
     /// The radii of balls by which the cores are reduced, in units of the scale.
-    pub(crate) peeled: [<T::Vector as Vector>::Scalar; 2],
+    pub(crate) peeled: [ScalarIn<T>; 2],
 }
 
 /// The difference of any two shapes.
@@ -315,36 +289,33 @@ impl<'a, T: Shapes + ?Sized> Pair<'a, T> {
 impl<T: Shapes + ?Sized> Pair<'_, T> {
     /// The difference swept by a ball, by which the first core is [rounded](Core::rounded) already.
     #[inline(always)]
-    pub(crate) fn swept(self, radius: <T::Vector as Vector>::Scalar) -> Self {
+    pub(crate) fn swept(self, radius: ScalarIn<T>) -> Self {
         Self { swept: radius, ..self }
     }
 
-    /// Forgets the hints for support points.
     pub(crate) fn forget_hints(&mut self) {
         self.hints = [Hint::new(), Hint::new()];
     }
 
-    /// The sum of the radii.
     #[inline(always)]
-    pub(crate) fn radius(&self) -> <T::Vector as Vector>::Scalar {
+    pub(crate) fn radius(&self) -> ScalarIn<T> {
         self.core_a.radius + self.core_b.radius
     }
 
-    /// The sum of the extents.
     #[inline(always)]
-    pub(crate) fn extent(&self) -> <T::Vector as Vector>::Scalar {
+    pub(crate) fn extent(&self) -> ScalarIn<T> {
         self.core_a.extent + self.core_b.extent
     }
 
     /// The sum of the errors of the support points.
     #[inline(always)]
-    pub(crate) fn error(&self) -> <T::Vector as Vector>::Scalar {
+    pub(crate) fn error(&self) -> ScalarIn<T> {
         self.core_a.error + self.core_b.error
     }
 
     /// A bound on all lengths that rounding errors are relative to, for bodies whose origins differ by `offset`.
     #[inline]
-    pub(crate) fn size(&self, offset: T::Vector) -> <T::Vector as Vector>::Scalar {
+    pub(crate) fn size(&self, offset: T::Vector) -> ScalarIn<T> {
         self.extent() + self.radius() + offset.norm()
     }
 
@@ -352,11 +323,7 @@ impl<T: Shapes + ?Sized> Pair<'_, T> {
     /// has a closed form for its closest point, or both are segments. For bodies of the given [size](Self::size) whose
     /// origins differ by `offset`, both in the world's unit.
     #[inline(always)]
-    pub(crate) fn closest_points(
-        &self,
-        offset: T::Vector,
-        size: <T::Vector as Vector>::Scalar,
-    ) -> Option<PointPair<T::Vector>> {
+    pub(crate) fn closest_points(&self, offset: T::Vector, size: ScalarIn<T>) -> Option<PointPair<T::Vector>> {
         let (a, b) = match (self.core_a.kind, self.core_b.kind) {
             (CoreKind::Point(a), CoreKind::Point(b)) => (a, b),
             (CoreKind::Point(a), _) => (a, self.shapes.closest_point(Of::B, a + offset)?),
@@ -435,9 +402,8 @@ impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
     }
 
     #[inline(always)]
-    fn hessian(&self, direction: T::Vector, changes: [T::Vector; 2]) -> Symmetric<<T::Vector as Vector>::Scalar> {
-        let a = self.shapes.support_hessian(Of::A, direction, changes);
-        let b = self.shapes.support_hessian(Of::B, -direction, changes);
+    fn hessian(&self, direction: T::Vector, changes: [T::Vector; 2]) -> Symmetric<ScalarIn<T>> {
+        let [a, b] = self.shapes.support_hessians([direction, -direction], changes);
         let whole = [0, 1, 2].map(|i| (a[i] + b[i]) * self.per_unit);
         without_ball(Symmetric::of(whole), self.peeled[0] + self.peeled[1], direction, changes)
     }
@@ -474,13 +440,9 @@ impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
         Some(if of == Of::B { crossing.with_normal(|n| -n) } else { crossing })
     }
 
-    fn hessian_of_first(
-        &self,
-        direction: T::Vector,
-        changes: [T::Vector; 2],
-    ) -> Symmetric<<T::Vector as Vector>::Scalar> {
-        let whole = self.shapes.support_hessian(Of::A, direction, changes).map(|entry| entry * self.per_unit);
-        without_ball(Symmetric::of(whole), self.peeled[0], direction, changes)
+    fn hessian_of_first(&self, direction: T::Vector, changes: [T::Vector; 2]) -> Symmetric<ScalarIn<T>> {
+        let [whole, _] = self.shapes.support_hessians([direction, -direction], changes);
+        without_ball(Symmetric::of(whole.map(|entry| entry * self.per_unit)), self.peeled[0], direction, changes)
     }
 
     #[inline(always)]
@@ -499,7 +461,7 @@ impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
         Measures { origin: self.core_a.origin, radius, extent, rolling_radius, error }
     }
 
-    fn set_scale(&mut self, scale: <T::Vector as Vector>::Scalar) {
+    fn set_scale(&mut self, scale: ScalarIn<T>) {
         self.per_unit = reciprocal_of_power(scale);
     }
 }

@@ -1,10 +1,13 @@
 //! The distance of two shapes (the paper's Algorithm 2).
 
-use convex_support::{Core, SupportMap, compiled_once};
+use convex_support::numerics::bound::raised;
+use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once};
+use num_traits::Float as _;
 
 use crate::body::{Both, Shapes};
 use crate::observer::Observer;
 use crate::separation::{Cores, OfOverlap, Wanted, direct, separation};
+use crate::shape::Shape;
 use crate::{Distance, DistanceOptions, Iterate, SignedDistance, SignedDistanceOptions};
 
 /// The distance of two shapes, and their closest points.
@@ -51,17 +54,20 @@ where
     watched(a, b, options, &mut Observer::new(&mut observer))
 }
 
+/// [`distance`] of shapes behind pointers, compiled once for all callers that need it rarely.
+#[cold]
+#[inline(never)]
+pub(crate) fn distance_of_any<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, options: DistanceOptions<V>) -> Distance<V> {
+    distance(a, b, options)
+}
+
 #[inline(always)]
-fn watched<A, B>(
+fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     a: &A,
     b: &B,
     options: DistanceOptions<A::Vector>,
     observer: &mut Observer<'_, A::Vector>,
-) -> Distance<A::Vector>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> Distance<A::Vector> {
     let shapes = Both::<_, _>::new(a, b);
     let cores = shapes.cores();
     // What is deep is left to the search.
@@ -100,5 +106,128 @@ compiled_once! {
             answer = answer.reversed();
         }
         answer
+    }
+}
+
+/// Calls `ask` with the distance of `a[k]` and `b[k]`, and writes what it returns into `answers[k]`, for each k.
+/// Nothing is allocated.
+///
+/// Each distance is the answer of [`distance`] to the last bit, whatever its neighbours are, so that a table may be
+/// cut into parts anywhere. If a list has a single shape, that shape is used for every answer. `ask` chooses what to
+/// keep: a number for a column of a data frame, the bracket, or the whole answer.
+///
+/// ```
+/// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
+/// use gjk_raycast::{DistanceOptions, map_distances_into};
+///
+/// // Columns as a data frame has them: where the balls are, and the distances to be found.
+/// let (x, y, z) = ([1.5, 3.0, 0.0], [0.0, 0.0, 2.0], [0.0, 4.0, 0.0]);
+/// let mut distances = [0.0; 3];
+///
+/// let table = Cuboid::new(DVec3::ONE)?;
+/// let ball = Ball::new(0.25)?;
+/// let balls = [0, 1, 2].map(|k| Posed::translated(ball, DVec3::new(x[k], y[k], z[k])));
+/// let [first, second, third] = balls;
+/// map_distances_into(
+///     &[table],
+///     &[first?, second?, third?],
+///     DistanceOptions::default(),
+///     &mut distances,
+///     |d| d.distance,
+/// );
+///
+/// assert_eq!(distances, [0.25, f64::sqrt(13.0) - 0.25, 0.75]);
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+///
+/// # Panics
+/// If a list has neither one shape nor as many as there are answers.
+pub fn map_distances_into<A, B, T>(
+    a: &[A],
+    b: &[B],
+    options: DistanceOptions<A::Vector>,
+    answers: &mut [T],
+    mut ask: impl FnMut(Distance<A::Vector>) -> T,
+) where
+    A: SupportMap,
+    B: SupportMap<Vector = A::Vector>,
+{
+    let count = answers.len();
+    assert!(a.len() == 1 || a.len() == count, "{} shapes a for {count} answers", a.len());
+    assert!(b.len() == 1 || b.len() == count, "{} shapes b for {count} answers", b.len());
+    for (k, answer) in answers.iter_mut().enumerate() {
+        let (a, b) = (&a[if a.len() == 1 { 0 } else { k }], &b[if b.len() == 1 { 0 } else { k }]);
+        *answer = ask(distance(a, b, options));
+    }
+}
+
+/// The changes of a body's pose that certainly leave it farther from another body than a margin, without another
+/// query: those in which no point of it goes farther than [`room`](Self::room).
+///
+/// [`Distance::free_step`] makes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FreeStep<S> {
+    /// How far every point may go: the lower bound of the distance, less the margin; negative if there is no room.
+    pub room: S,
+    /// The largest distance of the points of the body from the pivot.
+    pub reach: S,
+}
+
+impl<V: Vector> Distance<V> {
+    /// The changes of the pose of `a` that leave it farther from `b` than a margin.
+    ///
+    /// A change turns `a` by an angle about any axis through the pivot, and moves it. No point goes farther than the
+    /// path of the pivot plus the angle times the point's distance from it. Along the normal of the plane that
+    /// separates the bodies, no point comes nearer by more. So one distance serves until the body has gone as far as
+    /// its room: most steps of a controller need no new query.
+    ///
+    /// ```
+    /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
+    /// use gjk_raycast::{DistanceOptions, distance};
+    ///
+    /// let tool = Posed::translated(Cuboid::new(DVec3::new(0.3, 0.4, 1.2))?, DVec3::X * 5.0)?;
+    /// let worker = Ball::new(1.0)?;
+    /// let apart = distance(&tool, &worker, DistanceOptions::default()); // 3.7
+    /// let step = apart.free_step(&tool, DVec3::X * 5.0, 0.5);
+    /// // The tool reaches 1.3 from its middle. It may turn by one radian and go on by 1.8 …
+    /// assert!(step.allows(1.8, 1.0));
+    /// // … but not by 2, for all that is known.
+    /// assert!(!step.allows(2.0, 1.0));
+    /// assert!((step.way(1.0) - 1.9).abs() < 1e-12);
+    /// # Ok::<(), convex_support::InvalidShape>(())
+    /// ```
+    ///
+    /// If `b` moves too, subtract its path from the same room. The answer must be that of these bodies, with `a` in its
+    /// pose of the query. If [`limit`](crate::DistanceOptions::limit) ended the query, the room is that of the lower
+    /// bound found by then.
+    pub fn free_step<A: SupportMap<Vector = V> + ?Sized>(
+        &self,
+        a: &A,
+        pivot: V,
+        margin: V::Scalar,
+    ) -> FreeStep<V::Scalar> {
+        let Core { origin, radius, extent, error, .. } = a.core();
+        let (arm, epsilon) = ((origin - pivot).norm(), V::Scalar::EPSILON);
+        let rounded = (origin.abs().max_element() + pivot.abs().max_element()) * epsilon * Scalar::from_f64(2.0);
+        let room = self.lower - margin;
+        // The difference is rounded once.
+        FreeStep { room: room - raised(room.abs() * epsilon), reach: raised(arm + extent + radius + error + rounded) }
+    }
+}
+
+impl<S: Scalar> FreeStep<S> {
+    /// Whether the body stays farther away than the margin if its pivot moves by this length, and it turns about the
+    /// pivot by an angle. NaN is not allowed.
+    #[must_use]
+    pub fn allows(&self, way: S, angle: S) -> bool {
+        raised(way.abs() + self.reach * angle.abs()) < self.room
+    }
+
+    /// How far the pivot may go if the body turns by an angle; negative if it may not turn so far.
+    #[must_use]
+    pub fn way(&self, angle: S) -> S {
+        self.room - raised(self.reach * angle.abs())
     }
 }

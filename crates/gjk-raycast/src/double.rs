@@ -8,7 +8,6 @@ pub(crate) type Vec3 = [f64; 3];
 /// Squares of lengths and their products below this may have underflowed: such short lengths do not count.
 pub(crate) const LEAST: f64 = 1e-250;
 
-/// The coordinates of a vector.
 pub(crate) fn array<V: Vector>(v: V) -> Vec3 {
     core::array::from_fn(|i| if i < V::DIM { v.get(i).as_f64() } else { 0.0 })
 }

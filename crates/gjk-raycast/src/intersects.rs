@@ -57,16 +57,12 @@ where
 }
 
 #[inline(always)]
-fn watched<A, B>(
+fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     a: &A,
     b: &B,
     options: IntersectOptions<A::Vector>,
     observer: &mut Observer<'_, A::Vector>,
-) -> Intersection<A::Vector>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> Intersection<A::Vector> {
     let shapes = Both::<_, _>::new(a, b);
     let cores = shapes.cores();
     let mut pair = Pair::new(&shapes, cores.each_ref());

@@ -65,7 +65,7 @@ pub fn iterative_ray_cast_with<V: Vector>(
     let mut closest_point = |x| closest_point(x).ok_or(RayCastError::NoClosestPoint);
     let origin = closest_point(ray.source)?;
     if !origin.is_finite() {
-        return Ok(undecided(V::Scalar::ZERO, Status::Stalled, 1));
+        return Ok(RayCast::without_upper(Outcome::Undecided, V::Scalar::ZERO, Status::Stalled, 1));
     }
     let mut way = Travelled::new(ray, origin, &options);
     let mut iterations = 1;
@@ -84,17 +84,14 @@ pub fn iterative_ray_cast_with<V: Vector>(
         });
         match way.step(x, c, v) {
             Step::Advances if iterations < options.max_iterations => iterations += 1,
-            Step::Advances => return Ok(undecided(way.lower(), Status::IterationLimit, iterations)),
-            Step::Stalls => return Ok(undecided(way.lower(), Status::Stalled, iterations)),
+            Step::Advances => {
+                return Ok(RayCast::without_upper(Outcome::Undecided, way.lower(), Status::IterationLimit, iterations));
+            }
+            Step::Stalls => {
+                return Ok(RayCast::without_upper(Outcome::Undecided, way.lower(), Status::Stalled, iterations));
+            }
             Step::Misses(outcome) => {
-                let infinity = Float::infinity();
-                return Ok(RayCast {
-                    outcome,
-                    lower: infinity,
-                    upper: infinity,
-                    status: Status::Converged,
-                    iterations,
-                });
+                return Ok(RayCast::without_upper(outcome, Float::infinity(), Status::Converged, iterations));
             }
             Step::Arrives { noise } => {
                 let upper = way.latest_entry(noise, &mut closest_point, &mut iterations)?;
@@ -102,11 +99,6 @@ pub fn iterative_ray_cast_with<V: Vector>(
             }
         }
     }
-}
-
-/// The answer of a search that ended without one.
-fn undecided<V: Vector>(lower: V::Scalar, status: Status, iterations: usize) -> RayCast<V> {
-    RayCast { outcome: Outcome::Undecided, lower, upper: Float::infinity(), status, iterations }
 }
 
 /// How far a ray has come, and the last plane that it crosses on the way.
@@ -277,7 +269,7 @@ impl<'o, V: Vector> Travelled<'o, V> {
         let lambda = if is_at_start { self.least } else { self.local.lambda(self.crossing).max(self.least) };
         if lambda > self.options.max_lambda {
             let outcome = self.miss(self.along.or(self.normal).unwrap_or(-self.local.line.direction));
-            return RayCast { outcome, lower, upper: infinity, status: Status::Converged, iterations };
+            return RayCast::without_upper(outcome, lower, Status::Converged, iterations);
         }
         let point = if lambda > zero { self.at(self.crossing) } else { self.ray.source };
         let outcome = Outcome::Hit(RayHit { lambda, point, normal: self.normal });

@@ -138,16 +138,12 @@ mod curvature;
 mod data;
 mod derivative;
 mod distance;
-mod distances;
 mod double;
-mod error;
 mod extra;
-mod free_step;
 mod gjk;
 mod half_space;
 mod intersects;
 mod iterative_ray_cast;
-mod level;
 mod linear_cast;
 mod linkage;
 mod motion;
@@ -164,7 +160,6 @@ mod separation;
 mod shape;
 mod signed_distance;
 mod simplex;
-mod start_in_contact;
 mod symmetric;
 mod unit;
 mod warm_start;
@@ -181,17 +176,14 @@ pub use derivative::{
     ClosestFeatures, ClosestVelocities, ImpactGradient, PairGradient, PairHessian, RayCastGradient,
     RigidMotionGradient, Smoothness,
 };
-pub use distance::{distance, distance_with};
-pub use distances::map_distances_into;
-pub use error::RayCastError;
-pub use free_step::FreeStep;
+pub use distance::{FreeStep, distance, distance_with, map_distances_into};
 pub use half_space::HalfSpace;
 pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{linear_cast, linear_cast_with};
 pub use linkage::{
-    FreeBox, FreeInterval, Joint, JointBox, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, Met, Path,
-    PathContact, PathWorkspace,
+    FreeBox, FreeInterval, Joint, JointBounds, JointBox, JointBoxOutcome, JointKind, JointState, JointTrajectory, Link,
+    Linkage, LinkageError, Met, Path, PathContact, PathWorkspace,
 };
 pub use motion::{
     ChainMotion, Displacement, MovingBall, Pose, RigidMotion, Trajectory, TurningPlane, motion_cast, motion_cast_with,
@@ -200,7 +192,7 @@ pub use options::{
     CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, MotionCastOptions, RayCastOptions,
     SignedDistanceOptions, StartInContact,
 };
-pub use ray::{Motion, Ray};
+pub use ray::{Motion, Ray, RayCastError};
 pub use ray_cast::{ray_cast, ray_cast_with};
 #[cfg(feature = "rayon")]
 pub use ray_casts::par_ray_casts;

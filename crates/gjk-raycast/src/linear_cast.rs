@@ -1,20 +1,21 @@
 //! The first contact of two shapes that move without turning.
 
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
+use convex_support::{Core, CoreKind, Posed, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
 use crate::cast::{
-    CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, RayOf, cast, certain_closely, settle_start,
+    CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, RayOf, cast, certain_closely, settle_start, sliding,
 };
+use crate::distance::distance_of_any;
 use crate::extra::in_static;
 use crate::observer::Observer;
-use crate::shape::Shape;
-use crate::start_in_contact::{InContact, StartingPair};
+use crate::shape::{Shape, WithoutLines};
+use crate::signed_distance::signed_distance_of_any;
 use crate::{
-    Impact, Iterate, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCastError, RayCastOptions,
-    StartInContact, Status, WarmStart,
+    DistanceOptions, Impact, Iterate, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCastError,
+    RayCastOptions, SignedDistance, SignedDistanceOptions, StartInContact, Status, WarmStart,
 };
 
 /// Shapes may be in contact if they are apart by so many ε of their sizes and of their distance from the origin: they
@@ -104,17 +105,13 @@ where
 }
 
 #[inline(always)]
-fn watched<A, B>(
+fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     a: &A,
     b: &B,
     motion: Motion<A::Vector>,
     options: LinearCastOptions<A::Vector>,
     observer: &mut Observer<'_, A::Vector>,
-) -> Result<LinearCast<A::Vector>, RayCastError>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> Result<LinearCast<A::Vector>, RayCastError> {
     motion.check(&options)?;
     let target = options.target_distance.max(<A::Vector as Vector>::Scalar::ZERO);
     Ok(as_body(a, b, target, |body, shapes, cores| by_search(body, shapes, cores, motion, &options, observer)))
@@ -122,16 +119,12 @@ where
 
 /// The questions of a search about two shapes, one of them swept by a ball.
 #[inline(always)]
-pub(crate) fn as_body<A, B, R>(
+pub(crate) fn as_body<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, R>(
     a: &A,
     b: &B,
     target_distance: <A::Vector as Vector>::Scalar,
     search: impl FnOnce(&mut dyn CastBody<Vector = A::Vector>, [Shape<'_, A::Vector>; 2], &[Core<A::Vector>; 2]) -> R,
-) -> R
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> R {
     let shapes = Both::<_, _, true>::new(a, b);
     let mut cores = shapes.cores();
     cores[0] = cores[0].rounded(target_distance);
@@ -193,23 +186,18 @@ fn answer<V: Vector>(
 ) -> LinearCast<V> {
     let zero = V::Scalar::ZERO;
     let target = options.target_distance.max(zero);
-    let mut answer = LinearCast {
-        outcome: Outcome::Undecided,
-        lower: cast.lower,
-        upper: cast.upper,
-        status: cast.status,
-        iterations: cast.iterations,
+    let outcome = match &cast.outcome {
+        Outcome::Hit(hit) => Outcome::Hit(hit_on_the_way(hit, cast.scale, cores, motion.velocity_b)),
+        Outcome::Miss(miss) => Outcome::Miss(Miss { axis: -miss.axis }),
+        Outcome::Undecided => Outcome::Undecided,
     };
+    let &ObstacleCast { lower, upper, status, iterations, .. } = cast;
+    let mut answer = LinearCast { outcome, lower, upper, status, iterations };
     if motion.velocity_a == motion.velocity_b && answer.upper > zero {
         // What rests does not come to where a ray from its start would be.
         answer.upper = V::Scalar::infinity();
     }
     let start = StartingPair { a, b, target };
-    answer.outcome = match &cast.outcome {
-        Outcome::Hit(hit) => Outcome::Hit(hit_on_the_way(hit, cast.scale, cores, motion.velocity_b)),
-        Outcome::Miss(miss) => Outcome::Miss(Miss { axis: -miss.axis }),
-        Outcome::Undecided => Outcome::Undecided,
-    };
     // Where only deeper motions count, what is known of the start is looked for below.
     if let Outcome::Hit(Impact { time, normal: None, .. }) = answer.outcome
         && time == zero
@@ -327,4 +315,122 @@ fn only_if_deeper<V: Vector>(
         let (point, normal) = (contact.start.point_b, Some(contact.start.normal));
         answer.outcome = Outcome::Hit(Impact { time: zero, point, normal });
     }
+}
+
+/// How far on shapes are tested first, in units of their uncertainty; how much farther each time; and how often at
+/// most, which is beyond their sizes in any precision.
+const FIRST: f64 = 64.0;
+const FARTHER: f64 = 8.0;
+const LOOKS: usize = 18;
+
+/// Two shapes at the start of a cast. They are behind pointers, so that rare queries are compiled once.
+struct StartingPair<'s, V: Vector> {
+    a: Shape<'s, V>,
+    b: Shape<'s, V>,
+    /// How far apart they count as touching.
+    target: V::Scalar,
+}
+
+impl<V: Vector> StartingPair<'_, V> {
+    /// Returns a hit at the start by a point of both shapes, and the normal if they only touch: the entry that the cast
+    /// finds is behind the start or, if they slide, ahead of it.
+    #[cold]
+    #[inline(never)]
+    fn touch(&self, answer: &mut LinearCast<V>, options: &LinearCastOptions<V>) {
+        let zero = V::Scalar::ZERO;
+        let left = |taken: usize| options.max_iterations.saturating_sub(taken);
+        let wanted = DistanceOptions::new().with_max_iterations(left(answer.iterations));
+        let at_start = distance_of_any(self.a, self.b, wanted.with_sub_algorithm(options.sub_algorithm));
+        answer.iterations += at_start.iterations;
+        let max_iterations = left(answer.iterations);
+        let start = self.signed_distance(&LinearCastOptions { max_iterations, ..*options }, zero);
+        answer.iterations += start.iterations;
+        let only_touches = start.upper >= self.target;
+        if !only_touches {
+            // They are certainly deeper than touching, whatever the motion.
+            answer.upper = zero;
+        }
+        let normal = only_touches.then_some(start.normal);
+        answer.outcome = Outcome::Hit(Impact { time: zero, point: at_start.point_b, normal });
+    }
+
+    /// The signed distance at the start; the search stops as soon as the depth is certain to exceed a limit.
+    fn signed_distance(&self, options: &LinearCastOptions<V>, depth_limit: V::Scalar) -> SignedDistance<V> {
+        let mut wanted = SignedDistanceOptions::new().with_depth_limit(depth_limit);
+        wanted.max_iterations = wanted.max_iterations.min(options.max_iterations);
+        wanted.axis = options.warm_start.map(|warm| warm.axis);
+        signed_distance_of_any(self.a, self.b, wanted)
+    }
+
+    /// The contact of shapes that touch or overlap at the start, to a slack that is the rounding of their places;
+    /// `None` if they are certainly apart by more.
+    ///
+    /// The depth of a point in a convex set is a concave function of the point: it is the least of the distances from
+    /// the supporting planes. So if it falls at first along a line, it falls along all of it; and if it is more
+    /// anywhere along the line than at the start, it grows from the start on. Where the depth is `−s`, along the normal
+    /// `n`, it changes by `−n·w` with the relative velocity `w` of `a`; if several ways out are equally short, or the
+    /// shapes touch at corners, by the least of these. Then `n` is one of many normals, and the shapes may part along
+    /// another one although they close in along `n`. So it counts whether they are certainly deeper later.
+    #[cold]
+    #[inline(never)]
+    fn of_motion(&self, motion: Motion<V>, options: &LinearCastOptions<V>, slack: V::Scalar) -> Option<InContact<V>> {
+        let start = self.signed_distance(options, V::Scalar::infinity());
+        if !(start.lower <= self.target + slack) {
+            return None;
+        }
+        let velocity = motion.velocity_a - motion.velocity_b;
+        let (speed, closing) = (velocity.norm(), -start.normal.dot(velocity));
+        if !(closing > sliding(speed)) {
+            return Some(InContact { start, leaves_along: Some(start.normal) });
+        }
+        // If the depth is known to rounding, a motion that never shows a change slides.
+        let slides = start.upper >= self.target - slack || start.upper - start.lower <= slack;
+        let leaves_along = match self.later(velocity, speed / closing, &start, slack) {
+            Later::Deeper => None,
+            Later::Less(normal) => Some(normal),
+            Later::Unknown(normal) => slides.then_some(normal),
+        };
+        Some(InContact { start, leaves_along })
+    }
+
+    /// Whether the shapes get deeper than they start as they move along a velocity, so many times as far as they come
+    /// nearer along the normal. They are tested so far on that it shows, if the normal is the only one, to as far as
+    /// their sizes.
+    fn later(&self, velocity: V, per_depth: V::Scalar, start: &SignedDistance<V>, slack: V::Scalar) -> Later<V> {
+        let SignedDistance { upper, lower, normal, .. } = *start;
+        let size = self.a.core().size() + self.b.core().size() + self.target;
+        let unit = velocity.unit().unwrap_or(V::ZERO);
+        let mut step = (slack + (upper - lower)) * per_depth * V::Scalar::from_f64(FIRST);
+        let mut last = normal;
+        for _ in 0..LOOKS {
+            if !(step < size) {
+                break;
+            }
+            let Ok(moved) = Posed::translated(self.a, unit * step) else { break };
+            let there = signed_distance_of_any(&WithoutLines(&moved), self.b, SignedDistanceOptions::new());
+            if there.upper < lower.min(self.target - slack) {
+                return Later::Deeper;
+            }
+            if there.lower > upper {
+                return Later::Less(there.normal);
+            }
+            last = there.normal;
+            step *= V::Scalar::from_f64(FARTHER);
+        }
+        Later::Unknown(last)
+    }
+}
+
+/// Whether shapes in contact are deeper later than at the start; if not, with the normal.
+enum Later<V> {
+    Deeper,
+    Less(V),
+    Unknown(V),
+}
+
+/// Two shapes in contact.
+struct InContact<V: Vector> {
+    start: SignedDistance<V>,
+    /// If the motion does not go deeper: the direction from `b` to `a` along which it leaves, or slides.
+    leaves_along: Option<V>,
 }

@@ -11,7 +11,6 @@ pub(crate) struct Observer<'o, V: Vector>(Option<&'o mut Closure<'o, V>>);
 type Closure<'o, V> = dyn FnMut(Iterate<'_, V>) + 'o;
 
 impl<'o, V: Vector> Observer<'o, V> {
-    /// No observer.
     #[inline(always)]
     pub(crate) fn none() -> Self {
         Self(None)
@@ -22,7 +21,6 @@ impl<'o, V: Vector> Observer<'o, V> {
         Self(Some(observer))
     }
 
-    /// Shows an iterate.
     #[inline(always)]
     pub(crate) fn show<'i>(&mut self, iterate: impl FnOnce() -> Iterate<'i, V>) {
         if let Some(observer) = &mut self.0 {
@@ -43,7 +41,6 @@ impl<'o, V: Vector> Observer<'o, V> {
         search(&mut if is_watched { Observer::new(&mut reversed) } else { self.by_ref() })
     }
 
-    /// The same observer, lent.
     #[inline(always)]
     pub(crate) fn by_ref(&mut self) -> Observer<'_, V> {
         Observer(self.0.as_mut().map(|observer| &mut **observer as _))

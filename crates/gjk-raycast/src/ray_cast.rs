@@ -182,7 +182,6 @@ fn late<V: Vector>(
     }
 }
 
-/// The answer of a cast about a ray.
 #[inline(always)]
 fn answer<V: Vector>(cast: ObstacleCast<V>, ray: Ray<V>) -> RayCast<V> {
     let outcome = cast.outcome.map(|CastHit { lambda, normal, .. }| {

@@ -102,7 +102,6 @@ impl<V: Vector> RayExit<V> {
         Self { lower, status: self.status.of(&self.outcome, is_bounded), ..self }
     }
 
-    /// With the bounds of a miss.
     fn missed(self) -> Self {
         let infinity = V::Scalar::infinity();
         Self { lower: -infinity, upper: -infinity, ..self }

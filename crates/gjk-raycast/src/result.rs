@@ -166,7 +166,6 @@ impl<H, V> Outcome<H, V> {
         }
     }
 
-    /// The outcome with the hit converted.
     pub(crate) fn map<G>(self, of: impl FnOnce(H) -> G) -> Outcome<G, V> {
         match self {
             Self::Hit(hit) => Outcome::Hit(of(hit)),
@@ -257,6 +256,11 @@ pub struct Cast<H, V: Vector> {
 }
 
 impl<H, V: Vector> Cast<H, V> {
+    /// With no upper bound.
+    pub(crate) fn without_upper(outcome: Outcome<H, V>, lower: V::Scalar, status: Status, iterations: usize) -> Self {
+        Self { outcome, lower, upper: V::Scalar::infinity(), status, iterations }
+    }
+
     /// Whether the outcome is certain: a hit is if the upper bound is finite, and a miss always.
     #[must_use]
     pub fn is_certain(&self) -> bool {

@@ -60,16 +60,12 @@ where
 }
 
 #[inline(always)]
-fn watched<A, B>(
+fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     a: &A,
     b: &B,
     options: SignedDistanceOptions<A::Vector>,
     observer: &mut Observer<'_, A::Vector>,
-) -> SignedDistance<A::Vector>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> SignedDistance<A::Vector> {
     let shapes = Both::<_, _>::new(a, b);
     let cores = shapes.cores();
     direct(&shapes, cores, options.max_iterations, observer).unwrap_or_else(|| {

@@ -15,7 +15,6 @@ pub(crate) struct Symmetric<S> {
 impl<S: Scalar> Symmetric<S> {
     pub(crate) const ZERO: Self = Self { a: S::ZERO, b: S::ZERO, d: S::ZERO };
 
-    /// The matrix of the entries `a`, `b` and `d`.
     pub(crate) fn of([a, b, d]: [S; 3]) -> Self {
         Self { a, b, d }
     }
@@ -68,7 +67,6 @@ impl<S: Scalar> Symmetric<S> {
         ((self.a + self.d) * half, hypot((self.a - self.d) * half, self.b))
     }
 
-    /// The least eigenvalue.
     pub(crate) fn least_eigenvalue(self) -> S {
         let (mean, apart) = self.eigenvalues();
         // The product of both eigenvalues is the determinant.

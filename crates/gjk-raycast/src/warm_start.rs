@@ -91,7 +91,6 @@ impl<V: Vector> WarmStart<V> {
         if self.known >= Learned::Turn { self.error } else { V::Scalar::from_f64(TURN) }
     }
 
-    /// The warm start for the bodies in the other order.
     pub(crate) fn reversed(self) -> Self {
         Self { axis: -self.axis, turn: -self.turn, ..self }
     }

@@ -8,8 +8,9 @@ use allocation_counter::measure;
 use convex_support::glam::{DQuat, DVec3, Quat, Vec3};
 use convex_support::{Capsule, Cone, Cylinder, Ellipsoid, Polytope, Posed, SupportMap};
 use gjk_raycast::{
-    Joint, JointKind, LinearCastOptions, Link, Linkage, Motion, MotionCastOptions, PathWorkspace, Pose, RigidMotion,
-    Scene, SignedDistanceOptions, StartInContact, contact, linear_cast, motion_cast, signed_distance,
+    Joint, JointBounds, JointKind, JointState, JointTrajectory, LinearCastOptions, Link, Linkage, Motion,
+    MotionCastOptions, PathWorkspace, Pose, RigidMotion, Scene, SignedDistanceOptions, StartInContact, contact,
+    linear_cast, motion_cast, signed_distance,
 };
 
 type Shape = Box<dyn SupportMap<Vector = DVec3> + Send + Sync>;
@@ -134,6 +135,19 @@ fn a_path_allocates_nothing_once_warm() {
         Joint { parent, pose, kind: JointKind::Revolute(DVec3::Z) }
     };
     let link = |joint| Link { joint: Some(joint), bodies: vec![Capsule::new(0.4, 0.1).expect("positive")] };
+    /// Each joint goes to a value and back.
+    struct Swing(f64);
+    impl JointTrajectory for Swing {
+        type Scalar = f64;
+        fn state(&self, _: usize, t: f64) -> JointState<f64> {
+            let value = self.0 * t * (1.0 - t);
+            JointState { value, rate: self.0 * (1.0 - 2.0 * t), acceleration: -2.0 * self.0, error: 1e-15 }
+        }
+        fn bounds(&self, _: usize) -> JointBounds<f64> {
+            let most = self.0.abs();
+            JointBounds { value: most, rate: most, acceleration: 2.0 * most, jerk: 0.0 }
+        }
+    }
     let joints = [joint(None, DVec3::ZERO), joint(Some(0), DVec3::Y), joint(Some(1), DVec3::Y)];
     let robot = Linkage::new(joints, [0, 1, 2].map(link)).and_then(|robot| robot.with_pairs([[0, 2]]));
     let robot = robot.expect("a chain");
@@ -144,6 +158,7 @@ fn a_path_allocates_nothing_once_warm() {
         for turn in [-3.0, -1.0, -0.2, 0.5, 2.0] {
             let ways = [[0.0, 0.0, 0.0], [0.3, 0.1, 0.2], [turn, 0.5 * turn, 0.8 * turn]];
             let _ = black_box(robot.path(&ways, &scene, MotionCastOptions::new(), &mut workspace));
+            let _ = black_box(robot.path_along(&[Swing(turn)], &scene, MotionCastOptions::new(), &mut workspace));
         }
     });
     assert!(cold > 4 && warm == 0, "{cold} allocations, and then {warm}");

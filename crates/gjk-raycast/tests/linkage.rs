@@ -8,8 +8,9 @@ use convex_support::{
     Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap, Vector, support_value,
 };
 use gjk_raycast::{
-    Body, HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, Met, MotionCastOptions, Path,
-    PathContact, PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, Status, signed_distance,
+    Body, HalfSpace, Joint, JointBounds, JointBoxOutcome, JointKind, JointState, JointTrajectory, Link, Linkage,
+    LinkageError, Met, MotionCastOptions, Path, PathContact, PathWorkspace, Pose, RayCastError, Scene,
+    SignedDistanceOptions, Status, signed_distance,
 };
 
 type Bar = Rounded<Segment<DVec2>>;
@@ -42,6 +43,123 @@ fn ball_at(x: f64, y: f64) -> Posed<Ball<DVec2>> {
 
 fn ask(robot: &Linkage<Bar>, ways: &[Vec<f64>], scene: &Scene<Posed<Ball<DVec2>>>) -> Path<DVec2> {
     robot.path(ways, scene, MotionCastOptions::new(), &mut PathWorkspace::new()).expect("values for its joints")
+}
+
+/// A polynomial for each joint: a + b·t + c·t² + d·t³.
+#[derive(Clone, Debug)]
+struct Cubic(Vec<[f64; 4]>);
+
+impl Cubic {
+    fn straight(from: &[f64], to: &[f64]) -> Self {
+        Self(from.iter().zip(to).map(|(a, b)| [*a, b - a, 0.0, 0.0]).collect())
+    }
+}
+
+impl JointTrajectory for Cubic {
+    type Scalar = f64;
+
+    fn state(&self, joint: usize, t: f64) -> JointState<f64> {
+        let [a, b, c, d] = self.0[joint];
+        let value = a + (b + (c + d * t) * t) * t;
+        let error = 8.0 * f64::EPSILON * self.bounds(joint).value;
+        JointState { value, rate: b + (2.0 * c + 3.0 * d * t) * t, acceleration: 2.0 * c + 6.0 * d * t, error }
+    }
+
+    fn bounds(&self, joint: usize) -> JointBounds<f64> {
+        let [a, b, c, d] = self.0[joint].map(f64::abs);
+        let (value, rate) = (a + b + c + d, b + 2.0 * c + 3.0 * d);
+        JointBounds { value, rate, acceleration: 2.0 * c + 6.0 * d, jerk: 6.0 * d }
+    }
+}
+
+/// A straight edge that is given as a trajectory has the same answers. One that speeds up and slows down has the
+/// contact at the time at which its joint has the same value, and one that swings out and back meets a body or does
+/// not, by a billionth of its angle.
+#[test]
+fn first_contacts_along_trajectories_are_those_of_their_closed_form() -> Result<(), LinkageError> {
+    let (robot, options, mut workspace) = (arm(), MotionCastOptions::new(), PathWorkspace::new());
+    for k in 0..12 {
+        let (angle, far) = (0.6 + 0.1 * f64::from(k), 0.4 + 0.12 * f64::from(k));
+        let scene = Scene::new([ball_at(far * angle.cos(), far * angle.sin())]).expect("finite");
+        let touch = angle - (0.15 / far).asin();
+        let ways = [[-0.4, 0.0], [0.0, 0.0], [2.0, 0.0]];
+        let straight = [0, 1].map(|i| Cubic::straight(&ways[i], &ways[i + 1]));
+        let along = robot.path_along(&straight, &scene, options, &mut workspace)?;
+        let path = robot.path(&ways, &scene, options, &mut workspace)?;
+        let [(a, hit_a), (b, hit_b)] = [along, path].map(|path| path.contact().expect("it turns by 2"));
+        assert_eq!(
+            [(a.edge, a.link, a.met), (1, b.link, Met::Obstacle(0))],
+            [(1, b.link, b.met), (a.edge, a.link, a.met)]
+        );
+        assert!((hit_a.time - hit_b.time).abs() < 1e-13 && a.cast.upper - a.cast.lower < 1e-12, "{a:?} {b:?}");
+
+        // The same from rest to rest.
+        let smooth = [Cubic::straight(&ways[0], &ways[1]), Cubic(vec![[0.0, 0.0, 6.0, -4.0], [0.0; 4]])];
+        let path = robot.path_along(&smooth, &scene, options, &mut workspace)?;
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            *(if smooth[1].state(0, middle).value < touch { &mut low } else { &mut high }) = middle;
+        }
+        let (contact, hit) = path.contact().expect("it turns by 2");
+        assert!(contact.edge == 1 && contact.cast.lower <= high && low <= contact.cast.upper, "{low} {contact:?}");
+        assert!(contact.cast.upper - contact.cast.lower < 1e-11 && (hit.time - low).abs() < 1e-12, "{contact:?}");
+
+        // Out to an angle at the time 1/2, and back.
+        let swing = |most: f64| [Cubic(vec![[0.0, 4.0 * most, -4.0 * most, 0.0], [0.0; 4]])];
+        assert!(robot.path_along(&swing(touch - 1e-9), &scene, options, &mut workspace)?.is_free(), "{far}");
+        let path = robot.path_along(&swing(touch + 1e-9), &scene, options, &mut workspace)?;
+        let truth = 0.5 - 0.5 * (1e-9 / (touch + 1e-9)).sqrt();
+        let holds = |cast: gjk_raycast::MotionCast<_>| cast.lower <= truth + 1e-9 && truth - 1e-9 <= cast.upper;
+        assert!(path.contact().is_some_and(|(contact, hit)| holds(contact.cast) && (hit.time - truth).abs() < 1e-9));
+    }
+    Ok(())
+}
+
+/// What is no trajectory is refused by its index. If a value is not finite while a body is near, the answer is open.
+#[test]
+fn what_is_no_trajectory_is_refused_or_undecided() -> Result<(), LinkageError> {
+    struct With(f64, JointBounds<f64>);
+    impl JointTrajectory for With {
+        type Scalar = f64;
+        fn state(&self, joint: usize, time: f64) -> JointState<f64> {
+            let value = if joint == 1 && (0.3..0.6).contains(&time) { self.0 } else { time };
+            JointState { value, rate: 1.0, acceleration: 0.0, error: 1e-15 }
+        }
+        fn bounds(&self, joint: usize) -> JointBounds<f64> {
+            let good = JointBounds { value: 1.0, rate: 1.0, acceleration: 0.0, jerk: 0.0 };
+            if joint == 1 { self.1 } else { good }
+        }
+    }
+    let (robot, good) = (arm(), JointBounds { value: 1.0, rate: 1.0, acceleration: 0.0, jerk: 0.0 });
+    let ask = |edges: &[With], scene: &Scene<_>| {
+        robot.path_along(edges, scene, MotionCastOptions::new(), &mut PathWorkspace::new())
+    };
+    // The forearm would meet it at 0.39.
+    let scene = Scene::new([ball_at(0.45_f64.cos() + 0.7 * 0.9_f64.cos(), 0.45_f64.sin() + 0.7 * 0.9_f64.sin())])
+        .expect("finite");
+    for bad in [f64::NAN, f64::INFINITY, -1.0] {
+        for bounds in [
+            JointBounds { value: bad, ..good },
+            JointBounds { rate: bad, ..good },
+            JointBounds { acceleration: bad, ..good },
+            JointBounds { jerk: bad, ..good },
+        ] {
+            let refused = ask(&[With(0.5, good), With(0.5, bounds)], &scene);
+            assert_eq!(refused, Err(LinkageError::Bounds { edge: 1, value: 1 }), "{bad}");
+        }
+    }
+    assert_eq!(ask(&[Cubic(vec![[0.0; 4]; 2])].map(|_| With(0.5, good)), &Scene::default())?.first, None);
+    for bad in [f64::NAN, f64::INFINITY] {
+        let path = ask(&[With(bad, good)], &scene)?;
+        assert!(!path.is_free() && path.contact().is_none(), "{path:?}");
+        let ends = [Cubic(vec![[0.0; 4], [0.0, 0.0, bad, 0.0]])];
+        let refused = robot.path_along(&ends, &scene, MotionCastOptions::new(), &mut PathWorkspace::new());
+        assert_eq!(refused, Err(LinkageError::Bounds { edge: 0, value: 1 }));
+    }
+    let lies = JointBounds { value: 0.0, rate: 0.0, acceleration: 0.0, jerk: 0.0 };
+    let _ = ask(&[With(1e300, lies)], &scene)?;
+    Ok(())
 }
 
 /// A stretched arm that turns from an angle on meets a ball on its way when its middle line is 0.15 from the ball's
@@ -241,12 +359,12 @@ fn frames(joints: &[Joint<DVec3>], values: &[f64]) -> Vec<(DQuat, DVec3)> {
     frames
 }
 
-/// Robots of random joints in a tree, some of which slide, among random bodies: at 40 times of what is said to be free,
-/// every pair is apart; and by the upper bound of a contact one pair is not.
+/// Robots of random joints in a tree, some of which slide, among random bodies, on straight edges and on splines: at
+/// 40 or 200 times of what is said to be free, every pair is apart; and by the upper bound of a contact one pair is not.
 #[test]
 fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(), Box<dyn std::error::Error>> {
     let (mut seed, mut free, mut contacts) = (0x2004_1120_u64, 0, 0);
-    for _ in 0..40 {
+    for round in 0..80 {
         let joints: Vec<Joint<DVec3>> = (0..4)
             .map(|i: usize| {
                 let parent = i.checked_sub(1).filter(|_| random(&mut seed) < 0.8);
@@ -272,10 +390,25 @@ fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(
         let size = [0.3, 1.0, 4.0][(random(&mut seed) * 3.0) as usize];
         let ways =
             [0; 3].map(|_| (0..robot.values()).map(|_| size * (2.0 * random(&mut seed) - 1.0)).collect::<Vec<_>>());
-        let path = robot.path(&ways, &scene, MotionCastOptions::new(), &mut PathWorkspace::new())?;
+        let (options, mut workspace) = (MotionCastOptions::new(), PathWorkspace::new());
+        let mut edges = [0, 1].map(|edge| Cubic::straight(&ways[edge], &ways[edge + 1]));
+        let path = if round < 40 {
+            robot.path(&ways, &scene, options, &mut workspace)?
+        } else {
+            // Each edge is a spline with these rates at its ends.
+            let rates =
+                [0; 3].map(|_| ways[0].iter().map(|_| size * (4.0 * random(&mut seed) - 2.0)).collect::<Vec<_>>());
+            for (edge, cubic) in edges.iter_mut().enumerate() {
+                for (joint, [_, b, c, d]) in cubic.0.iter_mut().enumerate() {
+                    let (way, from, to) = (*b, rates[edge][joint], rates[edge + 1][joint]);
+                    (*b, *c, *d) = (from, 3.0 * way - 2.0 * from - to, from + to - 2.0 * way);
+                }
+            }
+            robot.path_along(&edges, &scene, options, &mut workspace)?
+        };
         // The least signed distance at a time.
         let least = |edge: usize, time: f64| -> Result<f64, InvalidShape> {
-            let values: Vec<f64> = ways[edge].iter().zip(&ways[edge + 1]).map(|(a, b)| a + time * (b - a)).collect();
+            let values: Vec<f64> = (0..robot.values()).map(|joint| edges[edge].state(joint, time).value).collect();
             let frames = frames(&joints, &values);
             let placed = |link: usize| {
                 let (rotation, at) = places[link].map_or((DQuat::IDENTITY, DVec3::ZERO), |joint| frames[joint]);
@@ -298,11 +431,12 @@ fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(
             Ok(least)
         };
         let proved = path.first.map_or((1, 1.0), |first| (first.edge, first.cast.lower));
-        for k in 0..20 {
+        let times = if round < 40 { 20 } else { 100 };
+        for k in 0..times {
             for (edge, end) in
                 [(0, if proved.0 == 0 { proved.1 } else { 1.0 }), (1, if proved.0 == 0 { 0.0 } else { proved.1 })]
             {
-                let time = end * f64::from(k) / 20.0;
+                let time = end * f64::from(k) / f64::from(times);
                 let distance = if end > 0.0 { least(edge, time)? } else { 1.0 };
                 assert!(distance > -1e-13, "{distance} at {time} of edge {edge}: {path:?}");
             }
@@ -315,7 +449,7 @@ fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(
             None => free += usize::from(path.is_free()),
         }
     }
-    assert!(free > 10 && contacts > 10, "both are exercised: {free} and {contacts}");
+    assert!(free > 20 && contacts > 20, "both are exercised: {free} and {contacts}");
     Ok(())
 }
 

@@ -9,9 +9,12 @@ use std::process::{Command, Stdio};
 
 use super::{cargo, write_program};
 
-/// How the programs are built, and what they stand on beside the libraries. `paint-stack` fills the memory of the stack before `main`, so that
-/// what was used shows afterwards.
-const RUNTIME: &str = "opt-level = \"s\"
+/// How the programs are built, and what they stand on beside the libraries. `paint-stack` fills the memory of the stack
+/// before `main`, so that what was used shows afterwards.
+const RUNTIME: &str = "lto = true
+codegen-units = 1
+panic = \"abort\"
+opt-level = \"s\"
 [dependencies]
 cortex-m = \"0.7\"
 cortex-m-rt = { version = \"0.7\", features = [\"paint-stack\"] }

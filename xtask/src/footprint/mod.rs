@@ -2,12 +2,15 @@
 //! code of a program that asks one question, beside a program that asks none.
 
 mod microcontroller;
+mod whole_program;
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
+
+use clap::Args;
 use workloads::note;
 use workloads::provenance::provenance;
 
@@ -162,6 +165,9 @@ const PROGRAMS: &[Program] = &[
     },
 ];
 
+/// The rest of the release profile: as small as the linker makes it.
+const SMALL: &str = "lto = true\ncodegen-units = 1\npanic = \"abort\"\n[dependencies]\n";
+
 /// What a program costs.
 struct Cost {
     packages: usize,
@@ -169,11 +175,30 @@ struct Cost {
     bytes: u64,
 }
 
-/// Builds the programs in `folder`, prints their table, and puts it into `docs/choosing-a-method.md`.
-pub fn run(folder: &Path, for_microcontroller: bool) -> ExitCode {
-    let (name, measure): (_, fn(&Path) -> _) =
-        if for_microcontroller { ("microcontroller", microcontroller::measure) } else { ("footprint", measure) };
-    let written = emptied(folder).and_then(|folder| measure(&folder)).and_then(|table| {
+/// Which programs are built, and where.
+#[derive(Debug, Args)]
+pub struct Choice {
+    /// Where the programs are built; emptied first.
+    #[arg(long, value_name = "FOLDER", default_value = "target/footprint")]
+    output: PathBuf,
+    /// Measure what one question costs a Cortex-M4 instead: code, stack, memory and instructions. Needs
+    /// `rustup target add thumbv7em-none-eabihf` and `qemu-system-arm`.
+    #[arg(long)]
+    microcontroller: bool,
+    /// Measure a whole program instead, which asks three questions about five shapes: code, and the time to build it
+    /// and to build it again.
+    #[arg(long, conflicts_with = "microcontroller")]
+    program: bool,
+}
+
+/// Builds the programs, prints their table, and puts it into `docs/choosing-a-method.md`.
+pub fn run(choice: &Choice) -> ExitCode {
+    let (name, measure): (_, fn(&Path) -> _) = match choice {
+        Choice { microcontroller: true, .. } => ("microcontroller", microcontroller::measure),
+        Choice { program: true, .. } => ("program", whole_program::measure),
+        _ => ("footprint", measure),
+    };
+    let written = emptied(&choice.output).and_then(|folder| measure(&folder)).and_then(|table| {
         let _ = io::stdout().write_all(table.as_bytes());
         let part = format!("{table}\nMeasured on {}.", provenance());
         let note = note::path("choosing-a-method.md");
@@ -225,7 +250,7 @@ fn build(program: &Program, folder: &Path) -> Result<Cost, String> {
         "fn input() -> f64 {{ std::env::args().count() as f64 }}\nfn main() {{\n{}\n}}\n",
         program.body.concat()
     );
-    let here = write_program(folder, program.name, program.import, "[dependencies]\n", &source).map_err(failed)?;
+    let here = write_program(folder, program.name, program.import, SMALL, &source).map_err(failed)?;
     let tree = cargo(
         &here,
         &here.join("target"),
@@ -233,7 +258,7 @@ fn build(program: &Program, folder: &Path) -> Result<Cost, String> {
     )?;
     // The program itself does not count.
     let packages: BTreeSet<&str> = tree.lines().filter(|line| !line.starts_with("program ")).collect();
-    let seconds = processor_time(&here)?;
+    let seconds = processor_time(&here, &["--release"])?;
     let binary = here.join("target/release").join(format!("program{}", std::env::consts::EXE_SUFFIX));
     let bytes = fs::metadata(binary).map_err(failed)?.len();
     Ok(Cost { packages: packages.len(), seconds, bytes })
@@ -256,7 +281,7 @@ fn write_program(
     });
     let manifest = format!(
         "[package]\nname = \"program\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n\
-         [profile.release]\nlto = true\ncodegen-units = 1\nstrip = true\npanic = \"abort\"\n\
+         [profile.release]\nstrip = true\n\
          {more}{import}"
     );
     fs::create_dir_all(here.join("src"))?;
@@ -280,11 +305,11 @@ fn cargo(folder: &Path, target: &Path, arguments: &[&str]) -> Result<String, Str
     }
 }
 
-/// Builds the program in `folder`, and says how many seconds of processor time that took: the shell knows it of its
-/// children, and does not mind how busy the machine is.
-fn processor_time(folder: &Path) -> Result<f64, String> {
+/// Builds the program in `folder` in this profile, and says how many seconds of processor time that took: the shell
+/// knows it of its children, and does not mind how busy the machine is.
+fn processor_time(folder: &Path, profile: &[&str]) -> Result<f64, String> {
     let mut command = Command::new("sh");
-    command.args(["-c", "\"${CARGO:-cargo}\" build --quiet --release && times"]);
+    command.args(["-c", "\"${CARGO:-cargo}\" build --quiet \"$@\" && times", "sh"]).args(profile);
     let output = command.current_dir(folder).env("CARGO_TARGET_DIR", folder.join("target")).output();
     let output = output.map_err(|why| format!("cannot build in {}: {why}", folder.display()))?;
     let text = String::from_utf8_lossy(&output.stdout);

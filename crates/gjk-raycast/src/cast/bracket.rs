@@ -291,18 +291,25 @@ impl<'a, V: Vector> Bracket<'a, V> {
         }
         let (point, witness) = self.body.support(n);
         self.iterations += 1;
+        if !self.observer.is_none() {
+            self.show(point, v, simplex);
+        }
+        if point.is_finite() { Ok((point, witness)) } else { Err(Stop::Exhausted(Status::Stalled)) }
+    }
+
+    /// Shows the observer a support point, beside `v` and the points of its simplex.
+    #[cold]
+    #[inline(never)]
+    fn show(&mut self, point: V, v: V, simplex: &[V]) {
         let x = self.x();
         let mut seen = [V::ZERO; MAX_POINTS];
-        let (low, high) = (self.low(), self.high.at);
-        self.observer.show(|| {
-            for (s, p) in seen.iter_mut().zip(simplex) {
-                *s = x - *p;
-            }
-            let (lower, upper) = (self.ray.lambda(low), self.ray.lambda(high));
-            let simplex = &seen[..simplex.len().min(MAX_POINTS)];
-            Iterate { iteration: self.iterations - 1, simplex, v, w: x - point, scale: self.scale, lower, upper }
-        });
-        if point.is_finite() { Ok((point, witness)) } else { Err(Stop::Exhausted(Status::Stalled)) }
+        for (s, p) in seen.iter_mut().zip(simplex) {
+            *s = x - *p;
+        }
+        let (lower, upper) = (self.ray.lambda(self.low()), self.ray.lambda(self.high.at));
+        let simplex = &seen[..simplex.len().min(MAX_POINTS)];
+        let iteration = self.iterations - 1;
+        self.observer.show(|| Iterate { iteration, simplex, v, w: x - point, scale: self.scale, lower, upper });
     }
 
     /// A bound on how far rounding has moved a parameter of the line.
@@ -317,7 +324,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
 
     /// Moves the lower bound up to the plane across the unit vector `n` that supports the core at `point`, unless that
     /// ends the search.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn advance(&mut self, n: V, point: V) -> Result<(), Stop<V>> {
         if let Some(crossing) = self.crossing(n, point)?
             && crossing.bound.at - self.noise * crossing.bound.spread >= self.earliest()
@@ -370,7 +377,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// The contact where the last plane is crossed, if a point made of `witness`, about which a ball of the radius is
     /// within the body, is no farther than that from the line at `high`, and that is no farther behind the plane than
     /// was asked for.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn close(
         &mut self,
         radius: V::Scalar,

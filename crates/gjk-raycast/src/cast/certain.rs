@@ -7,7 +7,7 @@ use num_traits::Float as _;
 use super::bracket::Bracket;
 use super::line::Line;
 use super::{CastHit, ObstacleCast, RayContact, Stop};
-use crate::body::{CastBody, Measures};
+use crate::body::{CastBody, Measures, ScalarFrom};
 use crate::observer::Observer;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCast, RayCastOptions, RayHit, Status};
 
@@ -59,7 +59,7 @@ pub(crate) fn certain<V: Vector>(
 pub(crate) fn certain_closely<B: CastBody + ?Sized>(
     body: &mut B,
     ray: Ray<B::Vector>,
-    direction_error: <B::Vector as Vector>::Scalar,
+    direction_error: ScalarFrom<B>,
     options: &RayCastOptions<B::Vector>,
     observer: &mut Observer<'_, B::Vector>,
 ) -> Option<RayCast<B::Vector>> {
@@ -98,7 +98,7 @@ pub(crate) fn show<B: CastBody + ?Sized>(
         Outcome::Hit(_) | Outcome::Undecided => return,
     };
     let w = at - body.measures().origin - body.support(axis).0;
-    let (lower, upper) = (Scalar::ZERO, <B::Vector as Vector>::Scalar::infinity());
+    let (lower, upper) = (Scalar::ZERO, ScalarFrom::<B>::infinity());
     observer.show(|| Iterate { iteration: 0, simplex: &[], v: axis, w, scale: Scalar::ONE, lower, upper });
 }
 

@@ -50,7 +50,6 @@ pub(crate) struct CastRay<V: Vector> {
 }
 
 impl<V: Vector> CastRay<V> {
-    /// A part of a ray as it is given.
     pub(crate) fn of(ray: Ray<V>, part: Part<V::Scalar>) -> Self {
         Self { ray, direction_error: Scalar::ZERO, part }
     }
@@ -88,7 +87,6 @@ impl<V: Vector> LocalRay<V> {
         Self { line: Line { foot, direction }, start: -(t * length - rest), per_unit: scale * per_length * to_near_one }
     }
 
-    /// A part of the ray.
     #[inline(always)]
     pub(crate) fn part(self, part: Part<V::Scalar>) -> Self {
         let Line { foot, direction } = self.line;

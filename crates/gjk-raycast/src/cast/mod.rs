@@ -128,7 +128,6 @@ fn search<V: Vector, const ALL: bool>(bracket: &mut Bracket<'_, V>) -> Result<Ra
 
 /// Where the ray first meets the body, as a search finds it.
 pub(crate) struct RayContact<V: Vector> {
-    /// Where on the line.
     mu: V::Scalar,
     /// The unit normal of a plane through that point, to rounding, that has the body behind it.
     normal: Option<V>,
@@ -174,7 +173,6 @@ pub(crate) struct CastHit<V: Vector> {
     pub(crate) witness: PointPair<V>,
 }
 
-/// The outcome and its bounds.
 #[inline(always)]
 fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, Stop<V>>) -> ObstacleCast<V> {
     let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());

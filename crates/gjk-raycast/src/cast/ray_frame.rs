@@ -143,19 +143,16 @@ impl<V: Vector> RayFrame<V> {
         ((v.dot(self.axes[0]), v.dot(self.axes[1])), -v.dot(self.line.direction))
     }
 
-    /// The vector across the ray.
     #[inline(always)]
     pub(super) fn vector(&self, across: Across<V::Scalar>) -> V {
         self.axes[0] * across.0 + self.axes[1] * across.1
     }
 
-    /// A normal of a plane.
     #[inline(always)]
     pub(super) fn normal(&self, plane: RayPlane<V::Scalar>) -> V {
         self.axes[0] * plane.a + self.axes[1] * plane.b - self.line.direction * plane.c
     }
 
-    /// The support point along any vector.
     #[inline(always)]
     pub(super) fn support(&self, bracket: &mut Bracket<'_, V>, n: V) -> Result<RayPoint<V>, Stop<V>> {
         let (point, witness) = bracket.support(n, n, &[])?;
@@ -191,7 +188,6 @@ impl<V: Vector> RayFrame<V> {
         PointPair { a: witness.a + a, b: witness.b - (both - a) }
     }
 
-    /// The support point of a plane.
     #[inline(always)]
     pub(super) fn support_of(
         &self,

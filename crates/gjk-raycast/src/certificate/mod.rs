@@ -159,17 +159,13 @@ fn leaning<V: Vector>(axis: V, direction: DVec3) -> V {
 }
 
 /// The points of `A − B` about the point `at`; the normal points from `b` to `a`, which is into the difference.
-fn points_of_pair<A, B>(
+fn points_of_pair<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     a: &A,
     b: &B,
     at: DVec3,
     normal: Option<A::Vector>,
     along: Option<DVec3>,
-) -> Vec<WeightedSupport<A::Vector>>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> Vec<WeightedSupport<A::Vector>> {
     let (core_a, core_b) = (a.core(), b.core());
     let offset = wide(core_a.origin) - wide(core_b.origin) - at;
     let (mut hint_a, mut hint_b) = (Hint::new(), Hint::new());

@@ -109,7 +109,6 @@ fn decimals(turn: f64) -> f64 {
     decimals
 }
 
-/// Support points with their weights.
 struct WeightedPoints<V> {
     found: Vec<FoundPoint<V>>,
     weights: [f64; MAX_POINTS],

@@ -23,7 +23,6 @@ enum Edge {
     Other(usize),
 }
 
-/// The corners of an overlap.
 pub(crate) type ClippedCorners<S> = SmallVec<[Clipped<S>; ROOM]>;
 
 /// The overlap of two outlines by the method of Sutherland and Hodgman: the first is cut along each edge of the second.

@@ -28,17 +28,13 @@ const CROSSES: f64 = 0.25;
 /// The points where the features of both shapes that face each other overlap, at most four, and the closest points, if
 /// deeper. If one of the features is a vertex, or edges cross, only the closest points. Points of the `last` manifold
 /// that still hold are preferred.
-pub(super) fn manifold<A, B>(
+pub(super) fn manifold<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     a: &A,
     b: &B,
     answer: &SignedDistance<A::Vector>,
     within: ScalarOf<A>,
     last: &[ContactPoint<A::Vector>],
-) -> Contact<A::Vector>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> Contact<A::Vector> {
     let is_single = match (a.core().kind, b.core().kind) {
         (CoreKind::Point(_), _) | (_, CoreKind::Point(_)) => true,
         (CoreKind::Segment { half: u, .. }, CoreKind::Segment { half: w, .. }) => {

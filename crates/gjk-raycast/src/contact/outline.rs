@@ -55,7 +55,6 @@ impl<V: Vector> ContactPlane<V> {
     }
 }
 
-/// A corner of an outline.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Corner<S> {
     pub(crate) at: Across<S>,
@@ -82,7 +81,6 @@ pub(crate) struct Ellipse<S> {
 }
 
 impl<S: Scalar> Outline<S> {
-    /// Without corners.
     pub(crate) fn empty() -> Self {
         Self { corners: SmallVec::new(), rim: None, is_complete: true }
     }

@@ -6,8 +6,24 @@ use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::outline::{ContactPlane, Corner, Outline, spread, wrap};
-use crate::level::Level;
 use crate::symmetric::{Across, cross, dot, way};
+
+/// A measured length along a normal, or a speed along it, and a bound on its error.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Level<S> {
+    pub(crate) value: S,
+    pub(crate) error: S,
+}
+
+impl<S: Scalar> Level<S> {
+    pub(crate) fn least(&self) -> S {
+        self.value - self.error
+    }
+
+    pub(crate) fn most(&self) -> S {
+        self.value + self.error
+    }
+}
 
 /// Support points after which the search for a height is given up. A polytope takes a few; on a curved surface each
 /// removes three quarters of the error.

@@ -3,7 +3,7 @@
 use convex_support::{Core, CoreKind, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::span::{DifferenceSpan, Span};
+use super::overlap::{DifferenceSpan, Span};
 use crate::contact::Outline;
 use crate::shape::Shape;
 use crate::symmetric::Symmetric;
@@ -36,14 +36,12 @@ pub struct ClosestFeatures<V: Vector> {
     /// The unit vector from `b` to `a`, and two across it; in 2D one, and zero.
     pub(super) normal: V,
     pub(super) across: [V; 2],
-    /// The closest points.
     pub(super) points: [V; 2],
     /// A point between them.
     pub(super) middle: V,
     /// Lengths below are in this unit, a power of two near the size of both bodies and their distance.
     pub(super) unit: V::Scalar,
     pub(super) signed_distance: V::Scalar,
-    /// The radii of both bodies.
     pub(super) radii: [V::Scalar; 2],
     /// The Hessians of both support values, radii included, across the normal. Zero along an edge, and on a face.
     pub(super) hessians: [Symmetric<V::Scalar>; 2],

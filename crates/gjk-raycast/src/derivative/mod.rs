@@ -16,9 +16,7 @@ mod gradient;
 mod hessian;
 mod look;
 mod overlap;
-mod refinement;
 mod smoothness;
-mod span;
 mod velocities;
 
 pub use closest_features::ClosestFeatures;

@@ -1,4 +1,4 @@
-//! The overlap of the features of two bodies, projected along the normal.
+//! The overlap of the features of two bodies, projected along the normal, and the directions in which they extend.
 //!
 //! It is never empty, since the closest points are in it, but often it has no area: boxes side by side have the edges
 //! of their faces in common, and boxes across a corner only the corners. Therefore a corner within rounding of a line
@@ -157,4 +157,76 @@ fn of_circle<S: Scalar>(&Ellipse { center, radii: [p, q] }: &Ellipse<S>, at: Acr
 
 fn mean_radius<S: Scalar>(rim: &Ellipse<S>) -> S {
     cross(rim.radii[0], rim.radii[1]).abs().sqrt()
+}
+
+/// The directions in the plane across a normal in which a body's supporting feature extends: those of a vertex, of an
+/// edge (a unit vector), or of a face. In 2D there is no more than an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Span<S> {
+    Vertex,
+    Edge(Across<S>),
+    Face,
+}
+
+impl<S: Scalar> Span<S> {
+    pub(super) fn of(outline: &Outline<S>) -> Self {
+        match outline.corners.as_slice() {
+            [] | [_] => Self::Vertex,
+            [from, to] => Self::Edge(direction(from.at, to.at)),
+            _ => Self::Face,
+        }
+    }
+
+    /// The dimension of the feature.
+    pub(super) fn kind(self) -> usize {
+        match self {
+            Self::Vertex => 0,
+            Self::Edge(_) => 1,
+            Self::Face => 2,
+        }
+    }
+
+    /// The turn of the normal that makes it exactly across the feature, if that is an edge or a face.
+    pub(super) fn turn(self, outline: &Outline<S>) -> Across<S> {
+        let zero = (S::ZERO, S::ZERO);
+        let slope = |e: Across<S>| {
+            let first = outline.corners[0].at;
+            outline.height(sum(first, e)) - outline.height(first)
+        };
+        match self {
+            Self::Vertex => zero,
+            Self::Edge(e) => scaled(e, -slope(e)),
+            Self::Face => (-slope((S::ONE, S::ZERO)), -slope((S::ZERO, S::ONE))),
+        }
+    }
+}
+
+/// The directions in which the difference of two features extends, if different features extend in different
+/// directions: then the points are the only ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum DifferenceSpan<S> {
+    /// Two vertices.
+    None,
+    /// An edge of `a`, 0, or of `b`, 1, and a vertex.
+    Edge(usize, Across<S>),
+    /// A face of `a`, or of `b`, and a vertex.
+    Face(usize),
+    /// Two edges that cross.
+    Crossed([Across<S>; 2]),
+}
+
+impl<S: Scalar> DifferenceSpan<S> {
+    /// `None` if both features extend in one direction. Edges are parallel if the sine of their angle is no more than
+    /// `parallel`.
+    pub(super) fn of(spans: [Span<S>; 2], parallel: S) -> Option<Self> {
+        match spans {
+            [Span::Vertex, Span::Vertex] => Some(Self::None),
+            [Span::Edge(e), Span::Vertex] => Some(Self::Edge(0, e)),
+            [Span::Vertex, Span::Edge(e)] => Some(Self::Edge(1, e)),
+            [Span::Face, Span::Vertex] => Some(Self::Face(0)),
+            [Span::Vertex, Span::Face] => Some(Self::Face(1)),
+            [Span::Edge(e), Span::Edge(f)] if cross(e, f).abs() > parallel => Some(Self::Crossed([e, f])),
+            _ => None,
+        }
+    }
 }

@@ -5,8 +5,7 @@ use num_traits::Float as _;
 
 use super::ClosestFeatures;
 use super::gradient::start_of;
-use super::overlap::{Overlap, separating};
-use super::span::{DifferenceSpan, Span};
+use super::overlap::{DifferenceSpan, Overlap, Span, separating};
 use crate::symmetric::{Across, dot, turned_left};
 use crate::{RigidMotion, Trajectory};
 
@@ -154,8 +153,7 @@ impl<V: Vector> ClosestFeatures<V> {
             let half = V::Scalar::from_f64(0.5);
             return value(self.points[0] * half + self.points[1] * half);
         }
-        let [e, f] = self.across;
-        let place = |(x, y): Across<V::Scalar>| self.middle + (e * x + f * y) * self.unit;
+        let place = |at| self.middle + self.out_of_plane(at) * self.unit;
         let overlap = Overlap::of(&self.outlines, self.slack());
         overlap.least(|at| value(place(at))).unwrap_or_else(|| value(self.middle))
     }

@@ -22,7 +22,7 @@ use convex_support::{AngularVelocity as _, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::ClosestFeatures;
-use super::span::DifferenceSpan;
+use super::overlap::DifferenceSpan;
 use crate::symmetric::{Across, Symmetric, cross, dot, scaled, sum, turned_left, way};
 use crate::unit::reciprocal_of_power;
 use crate::{RigidMotion, Trajectory};

@@ -3,19 +3,17 @@
 
 mod boxes;
 mod next_direction;
-mod progress;
 mod state;
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{CastBody as _, Pair, PointPair, Shapes, TracedSupport};
+use crate::body::{CastBody as _, Pair, PointPair, ScalarFrom, Shapes, TracedSupport};
 use crate::observer::Observer;
 use crate::unit::{lost_to_underflow, moderate, power_of_two_near, reciprocal_of_power};
 use crate::{Status, SubAlgorithm};
 pub(crate) use boxes::{BoxesMeet, boxes};
 use next_direction::NextDirection;
-pub(crate) use progress::Progress;
 pub(crate) use state::Gjk;
 
 /// The position of the difference of two bodies, and the unit of length.
@@ -146,11 +144,11 @@ pub(crate) fn gjk<B: TracedSupport>(
 ) -> End {
     let end = descend(state, body, &frame, &options, known, observer);
     // Numbers out of range determine nothing.
-    if !(frame.error < <B::Vector as Vector>::Scalar::infinity()) {
+    if !(frame.error < ScalarFrom::<B>::infinity()) {
         return End::Stalled;
     }
     // If no progress is possible any more, the cores may be within rounding of touching.
-    if end == End::Stalled && state.length < <B::Vector as Vector>::Scalar::infinity() {
+    if end == End::Stalled && state.length < ScalarFrom::<B>::infinity() {
         state.ensure_measured();
         if state.length - frame.radius <= frame.noise {
             return End::Overlap;
@@ -218,11 +216,39 @@ fn descend<B: TracedSupport>(
     End::IterationLimit
 }
 
+/// Steps without progress after which none is expected.
+const MAX_STEPS_WITHOUT: u8 = 8;
+
+/// Watches a quantity that decreases in every step in exact arithmetic, but only in most steps in rounded arithmetic.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Progress<S> {
+    least: S,
+    steps_left: u8,
+}
+
+impl<S: Scalar> Progress<S> {
+    pub(crate) fn new() -> Self {
+        Self { least: S::infinity(), steps_left: MAX_STEPS_WITHOUT }
+    }
+
+    /// Takes the next value. False if it is NaN, or after too many values in a row that are no less than an earlier
+    /// one.
+    pub(crate) fn goes_on(&mut self, value: S) -> bool {
+        if value < self.least {
+            *self = Self { least: value, steps_left: MAX_STEPS_WITHOUT };
+            true
+        } else {
+            self.steps_left = self.steps_left.saturating_sub(1);
+            self.steps_left > 0 && value >= self.least
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use convex_support::glam::{DVec3, Vec3};
 
-    use super::rounding;
+    use super::*;
 
     /// In single precision, `n·(a − b + o)/|n|` is within [`rounding`] of its value in double precision.
     #[test]
@@ -246,5 +272,14 @@ mod tests {
         }
         // The bound is that of the worst case, and not much larger.
         assert!(worst > 0.05, "{worst}");
+    }
+
+    #[test]
+    fn progress_ends_after_steps_without_a_gain_and_at_what_is_no_number() {
+        let mut progress = Progress::new();
+        assert!(progress.goes_on(2.0) && progress.goes_on(1.0));
+        let steps = (0..100).take_while(|_| progress.goes_on(1.0)).count();
+        assert_eq!(steps, usize::from(MAX_STEPS_WITHOUT) - 1);
+        assert!(!Progress::new().goes_on(f64::NAN));
     }
 }

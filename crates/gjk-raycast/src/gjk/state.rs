@@ -18,7 +18,6 @@ pub(crate) struct Gjk<V: Vector> {
     /// A vector along the shortest one found from zero to the difference (the paper's v), of any length.
     pub(crate) normal: V,
     pub(super) normal_length: V::Scalar,
-    /// The length of the shortest one.
     pub(crate) length: V::Scalar,
     /// The best lower bound on the distance of the cores, before rounding, and the axis that proves it, of any length.
     pub(crate) lower: V::Scalar,

@@ -6,10 +6,10 @@ use num_traits::Float as _;
 
 use super::HalfSpace;
 use super::plane::{Lowest, Plane};
-use crate::level::Level;
+use crate::contact::Level;
 use crate::{
-    Impact, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit,
-    StartInContact, Status,
+    Cast, Impact, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCast, RayCastError, RayCastOptions,
+    RayHit, StartInContact, Status,
 };
 
 impl<V: Vector> HalfSpace<V> {
@@ -33,7 +33,8 @@ impl<V: Vector> HalfSpace<V> {
         } else {
             (plane.height([ray.source], zero, zero), plane.sinking([ray.direction]))
         };
-        let Landing { outcome, lower, upper, status } = plane.crossing(height, sinking, options.max_lambda - begin);
+        let Cast { outcome, lower, upper, status, iterations } =
+            plane.crossing(height, sinking, options.max_lambda - begin);
         // The rounding of the sums.
         let from_source = |lambda, count| begin + lambda + roundings(count, begin + lambda);
         let is_at_once = begin <= zero;
@@ -49,7 +50,7 @@ impl<V: Vector> HalfSpace<V> {
         } else {
             (from_source(lower, -4.0).max(begin), from_source(upper, 4.0))
         };
-        Ok(RayCast { outcome, lower, upper, status, iterations: 0 })
+        Ok(RayCast { outcome, lower, upper, status, iterations })
     }
 
     /// The first contact of a moving shape, `a`, with the half-space, `b`: the ray of its lowest point.
@@ -63,17 +64,16 @@ impl<V: Vector> HalfSpace<V> {
         options: LinearCastOptions<V>,
     ) -> Result<LinearCast<V>, RayCastError> {
         motion.check(&options)?;
-        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+        let zero = V::Scalar::ZERO;
         let plane = self.plane();
         let Lowest { height, point } = plane.lowest(shape, options.target_distance.max(zero));
         let sinking = plane.sinking([motion.velocity_a, -motion.velocity_b]);
         let goes_deeper = options.start_in_contact == StartInContact::IfDeeper;
         if goes_deeper && height.least() <= zero && !(sinking.most() > zero) {
             let outcome = Outcome::Miss(Miss { axis: plane.unit });
-            let (lower, upper, status) = (infinity, infinity, Status::Converged);
-            return Ok(LinearCast { outcome, lower, upper, status, iterations: 1 });
+            return Ok(LinearCast::without_upper(outcome, V::Scalar::infinity(), Status::Converged, 1));
         }
-        let Landing { outcome, lower, upper, status } = plane.crossing(height, sinking, options.max_time);
+        let Cast { outcome, lower, upper, status, .. } = plane.crossing(height, sinking, options.max_time);
         let has_normal = height.most() >= zero || goes_deeper;
         let outcome = outcome.map(|time| {
             // With a target distance, the point of the half-space below.
@@ -84,34 +84,30 @@ impl<V: Vector> HalfSpace<V> {
     }
 }
 
-/// The time at which a sinking point reaches the plane, with bounds, counted from zero.
-pub(super) struct Landing<V: Vector> {
-    pub(super) outcome: Outcome<V::Scalar, V>,
-    pub(super) lower: V::Scalar,
-    pub(super) upper: V::Scalar,
-    pub(super) status: Status,
-}
-
 impl<V: Vector> Plane<V> {
-    /// The landing of a point at a height, which sinks at a speed, if it lands before `end`. If it may be in the
-    /// half-space already, the answer is a hit at once. This hit is certain if the point is inside by more than its
-    /// error, or certainly sinks.
-    pub(super) fn crossing(&self, height: Level<V::Scalar>, sinking: Level<V::Scalar>, end: V::Scalar) -> Landing<V> {
+    /// When a point at a height, which sinks at a speed, lands, counted from zero, if it lands before `end`. If it may
+    /// be in the half-space already, the answer is a hit at once. This hit is certain if the point is inside by more
+    /// than its error, or certainly sinks.
+    pub(super) fn crossing(
+        &self,
+        height: Level<V::Scalar>,
+        sinking: Level<V::Scalar>,
+        end: V::Scalar,
+    ) -> Cast<V::Scalar, V> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
-        let miss = Landing {
-            outcome: Outcome::Miss(Miss { axis: self.unit }),
-            lower: infinity,
-            upper: infinity,
-            status: Status::Converged,
+        let miss = |lower| Cast::without_upper(Outcome::Miss(Miss { axis: self.unit }), lower, Status::Converged, 0);
+        let undecided = |lower| Cast::without_upper(Outcome::Undecided, lower, Status::Stalled, 0);
+        let hit = |time, lower, upper| {
+            let outcome = Outcome::Hit(time);
+            let status = Status::Converged.of(&outcome, upper < infinity);
+            Cast { outcome, lower, upper, status, iterations: 0 }
         };
-        let undecided =
-            |lower| Landing { outcome: Outcome::Undecided, lower, upper: infinity, status: Status::Stalled };
         let is_known = height.value.is_finite() && height.error.is_finite() && !sinking.value.is_nan();
         if !is_known {
             return undecided(zero);
         }
         if end < zero {
-            return miss;
+            return miss(infinity);
         }
         // The quotient loses half an ε.
         let latest = |height: V::Scalar| {
@@ -120,16 +116,15 @@ impl<V: Vector> Plane<V> {
         };
         if !(height.least() > zero) {
             let upper = if height.most() <= zero { zero } else { latest(height.most()) };
-            let outcome = Outcome::Hit(zero);
-            return Landing { status: Status::Converged.of(&outcome, upper < infinity), outcome, lower: zero, upper };
+            return hit(zero, zero, upper);
         }
         if !(sinking.most() > zero) {
-            return miss;
+            return miss(infinity);
         }
         let earliest = height.least() / sinking.most();
         let lower = earliest - roundings(2.0, earliest);
         if lower > end {
-            return miss;
+            return miss(infinity);
         }
         if !(sinking.least() > zero) {
             return undecided(lower);
@@ -137,9 +132,8 @@ impl<V: Vector> Plane<V> {
         // Whether a hit at the very end counts is decided by the returned time.
         let time = height.value / sinking.value;
         if !(time <= end) {
-            return Landing { lower, ..miss };
+            return miss(lower);
         }
-        let (outcome, upper) = (Outcome::Hit(time), latest(height.most()));
-        Landing { status: Status::Converged.of(&outcome, upper < infinity), outcome, lower, upper }
+        hit(time, lower, latest(height.most()))
     }
 }

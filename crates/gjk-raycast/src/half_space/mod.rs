@@ -26,7 +26,6 @@ pub(crate) use self::plane::Plane;
 pub struct HalfSpace<V: Vector> {
     normal: V,
     offset: V::Scalar,
-    /// The length of the normal.
     pub(crate) length: V::Scalar,
 }
 

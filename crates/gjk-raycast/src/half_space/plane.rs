@@ -6,7 +6,7 @@ use convex_support::{Core, Hint, Rounding, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use super::HalfSpace;
-use crate::level::Level;
+use crate::contact::Level;
 use crate::unit::{power_of_two_near, reciprocal_of_power};
 
 /// The plane of a half-space. Its normal and offset are those given, in units of a power of two near the normal's
@@ -16,7 +16,6 @@ pub(crate) struct Plane<V: Vector> {
     normal: V,
     offset: V::Scalar,
     length: V::Scalar,
-    /// The unit normal.
     pub(crate) unit: V,
 }
 
@@ -27,7 +26,6 @@ pub(super) struct Lowest<V: Vector> {
 }
 
 impl<V: Vector> HalfSpace<V> {
-    /// The plane that bounds it.
     pub(crate) fn plane(&self) -> Plane<V> {
         let per_unit = reciprocal_of_power(power_of_two_near(self.length));
         let (normal, length) = (self.normal * per_unit, self.length * per_unit);

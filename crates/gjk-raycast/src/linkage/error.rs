@@ -69,8 +69,15 @@ pub enum LinkageError {
     },
     /// A joint value is not finite.
     Value {
-        /// The index of the waypoint; 0 for a box.
+        /// The index of the waypoint; 0 for a box. For a trajectory it is the index of the edge.
         waypoint: usize,
+        /// The index of the value.
+        value: usize,
+    },
+    /// A bound of a trajectory is negative or not finite.
+    Bounds {
+        /// The index of the edge.
+        edge: usize,
         /// The index of the value.
         value: usize,
     },
@@ -100,6 +107,7 @@ impl Display for LinkageError {
                 write!(f, "waypoint {waypoint} has {values} values, but {joints} joints move")
             }
             Self::Value { waypoint, value } => write!(f, "value {value} of waypoint {waypoint} is not finite"),
+            Self::Bounds { edge, value } => write!(f, "a bound for value {value} of edge {edge} is none"),
             Self::Interval { value } => write!(f, "the interval of value {value} ends before it begins"),
             Self::Option(why) => write!(f, "{why}"),
         }

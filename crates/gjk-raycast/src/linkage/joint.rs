@@ -5,6 +5,7 @@ use convex_support::{Matrix as _, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::frame::{LinkFrame, epsilons};
+use super::trajectory::JointState;
 use crate::{Pose, axial};
 
 /// A joint of a [`Linkage`](crate::Linkage): its frame in that of its parent, and its motion.
@@ -64,17 +65,8 @@ pub(super) struct JointStage<V: Vector> {
     pub(super) column: usize,
 }
 
-/// The value of a joint at one time, and how fast it changes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Value<S> {
-    pub(super) value: S,
-    pub(super) rate: S,
-    /// A bound on the rounding of the value.
-    pub(super) error: S,
-}
-
-/// A moving frame at one time, with the first and second derivatives of its pose, where all joint values change at
-/// constant rates. The frame carries a bound on its error, and the derivatives do not.
+/// A moving frame at one time, with the first and second derivatives of its pose. The frame carries a bound on its
+/// error, and the derivatives do not.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moving<V: Vector> {
     pub(super) frame: LinkFrame<V>,
@@ -147,10 +139,12 @@ impl<V: Vector> Moving<V> {
     /// The frame that a stage at this value leads to from this one.
     ///
     /// Its origin is a point of this frame, or slides along it. Its angular velocity is `ω + w`, where `w` is the
-    /// joint's own. Since this frame turns `w`, the derivative of the sum is `ω′ + ω × w`. If the joint slides with the
-    /// velocity `d`, its origin has the acceleration of a point of this frame plus `2ω × d` (Coriolis).
+    /// joint's own. Since this frame turns `w`, the derivative of the sum is `ω′ + ω × w`, plus the acceleration of the
+    /// joint about its axis. If the joint slides with the velocity `d`, its origin has the acceleration of a point of
+    /// this frame plus `2ω × d` (Coriolis), plus that of the joint along its axis.
     #[inline]
-    pub(super) fn beyond(&self, stage: &JointStage<V>, Value { value, rate, error }: Value<V::Scalar>) -> Self {
+    pub(super) fn beyond(&self, stage: &JointStage<V>, state: JointState<V::Scalar>) -> Self {
+        let JointState { value, rate, acceleration, error } = state;
         let &JointStage { ref fixed, arm, axis, ref turn, .. } = stage;
         if let Some([sine, versine]) = turn {
             let (sin, cos) = sin_cos(value);
@@ -159,12 +153,13 @@ impl<V: Vector> Moving<V> {
             let rotation = self.frame.rotation * V::Matrix::from_cols_fn(turned);
             let moved = self.frame.moved(fixed.translation, arm, fixed.shift_error);
             let turn_error = moved.turn_error + fixed.turn_error + error + epsilons(OF_TURN);
-            let spin = axial::turned(&rotation, axis) * rate;
+            let about = axial::turned(&rotation, axis);
+            let spin = about * rate;
             return Self {
                 velocity: self.velocity_at(moved.translation),
                 acceleration: self.acceleration_at(moved.translation),
                 spin: self.spin + spin,
-                spin_rate: self.spin_rate + axial::product(self.spin, spin),
+                spin_rate: self.spin_rate + axial::product(self.spin, spin) + about * acceleration,
                 frame: LinkFrame { rotation, turn_error, ..moved },
             };
         }
@@ -173,11 +168,12 @@ impl<V: Vector> Moving<V> {
         let lost = (fixed.turn_error + epsilons(6.0)) * (length + arm);
         let moved = self.frame.moved(fixed.translation + along * value, arm + length, fixed.shift_error + error + lost);
         let turn_error = moved.turn_error + fixed.turn_error + epsilons(4.5);
-        let slide = self.frame.rotation * along * rate;
+        let direction = self.frame.rotation * along;
+        let slide = direction * rate;
         let coriolis = axial::turning(self.spin, slide);
         Self {
             velocity: self.velocity_at(moved.translation) + slide,
-            acceleration: self.acceleration_at(moved.translation) + coriolis + coriolis,
+            acceleration: self.acceleration_at(moved.translation) + coriolis + coriolis + direction * acceleration,
             frame: LinkFrame { rotation: self.frame.rotation * fixed.rotation, turn_error, ..moved },
             ..*self
         }

@@ -29,10 +29,11 @@ use smallvec::SmallVec;
 
 use super::error::LinkageError;
 use super::frame::epsilons;
-use super::joint::{JointStage, Moving, Value};
+use super::joint::{JointStage, Moving};
 use super::link_motion::Route;
 use super::linkage::Linkage;
 use super::result::FreeBox;
+use super::trajectory::{JointBounds, JointState};
 use crate::axial;
 use crate::ray::check_limits;
 use crate::{SignedDistanceOptions, signed_distance};
@@ -221,7 +222,8 @@ fn look<V: Vector, S: SupportMap<Vector = V>>(
     // The axis of each joint, and its origin.
     let (mut moving, mut axes) = (Moving::WORLD, SmallVec::<[[V; 2]; 8]>::new());
     for stage in stages {
-        moving = moving.beyond(stage, Value { value: middle(joint_box[stage.column]), rate: zero, error: zero });
+        let value = middle(joint_box[stage.column]);
+        moving = moving.beyond(stage, JointState { value, rate: zero, acceleration: zero, error: zero });
         axes.push(stage.placed(&moving.frame));
     }
     let frame = moving.frame.then(tail);
@@ -250,11 +252,13 @@ fn look<V: Vector, S: SupportMap<Vector = V>>(
         }
     }
     level += least_height(&|direction: V| -support_value(&a, -direction), n, &changes);
-    let slide = |column: usize| {
-        let [low, high] = joint_box[column];
-        low.abs().max(high.abs())
+    let bent_by = |half: &dyn Fn(usize) -> V::Scalar| {
+        let bounds = route.bounds(|column| {
+            let [low, high] = joint_box[column];
+            JointBounds { value: low.abs().max(high.abs()), ..JointBounds::constant(half(column)) }
+        });
+        bounds.acceleration.of(reach) / two
     };
-    let bent_by = |half: &dyn Fn(usize) -> V::Scalar| route.bounds(half, slide).acceleration.of(reach) / two;
     let bent = bent_by(&half);
     let shapes = a.core().error + b.core().error;
     // The directions of the support values are as long as 1 plus the angles by which the joints turn.

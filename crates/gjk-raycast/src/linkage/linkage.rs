@@ -14,6 +14,7 @@ use super::frame::{LinkFrame, epsilons};
 use super::joint::{Joint, JointKind, JointStage, Link, Moving};
 use super::link_motion::{PathEdge, Route};
 use super::result::{Met, PathContact};
+use super::trajectory::JointTrajectory as _;
 use crate::{Impact, axial};
 
 /// A robot: links, each of some bodies, carried by joints in a tree.
@@ -177,7 +178,7 @@ impl<S: SupportMap> Linkage<S> {
         self.check(0, values)?;
         let shape = self.bodies(link).get(body).ok_or(LinkageError::NoSuchBody { link, body })?;
         let (route, edge) = (&self.skeleton.views[link].route, PathEdge { from: values, to: values });
-        let (_, frame) = edge.place(route, Scalar::ZERO);
+        let (_, frame) = route.place(edge, Scalar::ZERO);
         let placed = Posed::from_matrix(shape, frame.rotation, frame.translation);
         placed.map_err(|_| LinkageError::BodyNotFinite { link, body })
     }
@@ -205,7 +206,7 @@ impl<S: SupportMap> Linkage<S> {
         self.check(1, to)?;
         let ball = self.skeleton.links.get(link).ok_or(LinkageError::NoSuchBody { link, body: 0 })?.all;
         let (route, edge) = (&self.skeleton.views[link].route, PathEdge { from, to });
-        let ((moving, frame), bounds) = (edge.place(route, Scalar::ZERO), edge.bounds(route));
+        let ((moving, frame), bounds) = (route.place(edge, Scalar::ZERO), route.bounds(|column| edge.bounds(column)));
         let reach = route.distance(ball.center) + ball.radius;
         let at_first = if let Some(n) = along {
             let turned = frame.rotation.transpose_mul(axial::turning(moving.spin, -n));
@@ -266,7 +267,7 @@ impl<S: SupportMap> Linkage<S> {
             let mut moving = Moving::WORLD;
             let Some(link) = link else { continue };
             for stage in &self.skeleton.views.get(link)?.route.stages {
-                moving = moving.beyond(stage, edge.at(stage.column, time));
+                moving = moving.beyond(stage, edge.state(stage.column, time));
                 rises[stage.column] += stage.rise(stage.placed(&moving.frame), normal?, point) * sign;
             }
         }

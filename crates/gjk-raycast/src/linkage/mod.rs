@@ -10,6 +10,7 @@ mod linkage;
 mod path;
 mod result;
 mod sweep;
+mod trajectory;
 
 pub use error::LinkageError;
 pub use joint::{Joint, JointKind, Link};
@@ -17,3 +18,4 @@ pub use joint_box::{JointBox, JointBoxOutcome};
 pub use linkage::Linkage;
 pub use result::{FreeBox, FreeInterval, Met, Path, PathContact};
 pub use sweep::PathWorkspace;
+pub use trajectory::{JointBounds, JointState, JointTrajectory};

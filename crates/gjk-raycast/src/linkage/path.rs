@@ -8,6 +8,7 @@ use super::link_motion::{LinkMotion, PathEdge};
 use super::linkage::{LinkView, Linkage};
 use super::result::{FreeInterval, Met, Path, PathContact, ProvedSteps};
 use super::sweep::{Near, PathWorkspace, Sweep};
+use super::trajectory::JointTrajectory;
 use crate::motion::checked;
 use crate::{Body, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene, StartInContact};
 
@@ -37,7 +38,74 @@ impl<S: SupportMap> Linkage<S> {
         options: MotionCastOptions<S::Vector>,
         workspace: &mut PathWorkspace<S::Vector>,
     ) -> Result<Path<S::Vector>, LinkageError> {
-        self.watched_path(waypoints, scene, options, workspace, None)
+        self.straight_path(waypoints, scene, options, workspace, None)
+    }
+
+    /// [`path`](Self::path) along edges on which joint values change as the caller states. Each edge takes one unit of
+    /// time, and begins with the values with which the one before ends. A path of no edge is free.
+    ///
+    /// ```
+    /// use convex_support::{Ball, glam::DVec2};
+    /// use gjk_raycast::{
+    ///     HalfSpace, Joint, JointBounds, JointKind, JointState, JointTrajectory, Link, Linkage, MotionCastOptions,
+    ///     PathWorkspace, Pose, Scene,
+    /// };
+    ///
+    /// // From rest to rest: q = d·(3t² − 2t³) for each joint, whose way is d.
+    /// struct Smooth([f64; 1]);
+    ///
+    /// impl JointTrajectory for Smooth {
+    ///     type Scalar = f64;
+    ///     fn state(&self, joint: usize, t: f64) -> JointState<f64> {
+    ///         let d = self.0[joint];
+    ///         JointState {
+    ///             value: d * t * t * (3.0 - 2.0 * t),
+    ///             rate: 6.0 * d * t * (1.0 - t),
+    ///             acceleration: d * (6.0 - 12.0 * t),
+    ///             error: 8.0 * f64::EPSILON * d.abs(),
+    ///         }
+    ///     }
+    ///     fn bounds(&self, joint: usize) -> JointBounds<f64> {
+    ///         let d = self.0[joint].abs();
+    ///         JointBounds { value: d, rate: 1.5 * d, acceleration: 6.0 * d, jerk: 12.0 * d }
+    ///     }
+    /// }
+    ///
+    /// // A ball of radius 1 slides from x = 0 to 4, and meets a wall when it is at x = 2.
+    /// let slide = Joint { parent: None, pose: Pose::default(), kind: JointKind::Prismatic(DVec2::X) };
+    /// let robot = Linkage::new([slide], [Link { joint: Some(0), bodies: vec![Ball::new(1.0)?] }])?;
+    /// let mut scene = Scene::<Ball<DVec2>>::default();
+    /// scene.insert_half_space(HalfSpace::new(DVec2::NEG_X, -3.0)?);
+    /// let (options, mut workspace) = (MotionCastOptions::new(), PathWorkspace::new());
+    /// let path = robot.path_along(&[Smooth([4.0])], &scene, options, &mut workspace)?;
+    /// let (_, hit) = path.contact().ok_or("it meets the wall")?;
+    /// assert!((hit.time - 0.5).abs() < 1e-12);
+    /// assert!(robot.path_along(&[Smooth([1.9])], &scene, options, &mut workspace)?.is_free());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`LinkageError`] if a value at an end of an edge is not finite, a bound is negative or not finite, or an option
+    /// is NaN. Values in between that are not finite contradict the bounds: they end no search, and prove nothing.
+    pub fn path_along<O: SupportMap<Vector = S::Vector>, T: JointTrajectory<Scalar = ScalarOf<S>>>(
+        &self,
+        edges: &[T],
+        scene: &Scene<O>,
+        options: MotionCastOptions<S::Vector>,
+        workspace: &mut PathWorkspace<S::Vector>,
+    ) -> Result<Path<S::Vector>, LinkageError> {
+        for (edge, trajectory) in edges.iter().enumerate() {
+            for value in 0..self.values() {
+                if !trajectory.bounds(value).are_valid() {
+                    return Err(LinkageError::Bounds { edge, value });
+                }
+                let is_finite = |time| trajectory.state(value, time).value.is_finite();
+                if !(is_finite(Scalar::ZERO) && is_finite(Scalar::ONE)) {
+                    return Err(LinkageError::Value { waypoint: edge, value });
+                }
+            }
+        }
+        self.watched_path(edges.len(), |index| &edges[index], scene, checked(options)?, workspace, None)
     }
 
     /// [`path`](Self::path) with an observer that sees its proof, bodies and intervals in no particular order. For a
@@ -56,7 +124,7 @@ impl<S: SupportMap> Linkage<S> {
         workspace: &mut PathWorkspace<S::Vector>,
         mut observer: impl FnMut(FreeInterval<S::Vector>),
     ) -> Result<Path<S::Vector>, LinkageError> {
-        self.watched_path(waypoints, scene, options, workspace, Some(&mut observer))
+        self.straight_path(waypoints, scene, options, workspace, Some(&mut observer))
     }
 
     /// [`path`](Self::path) for many paths on all threads, such as the edges of a roadmap; answers in the same order.
@@ -75,33 +143,51 @@ impl<S: SupportMap> Linkage<S> {
         paths.par_iter().map_init(PathWorkspace::new, ask).collect()
     }
 
-    fn watched_path<O: SupportMap<Vector = S::Vector>, W: AsRef<[ScalarOf<S>]>>(
+    fn straight_path<O: SupportMap<Vector = S::Vector>, W: AsRef<[ScalarOf<S>]>>(
         &self,
         waypoints: &[W],
+        scene: &Scene<O>,
+        options: MotionCastOptions<S::Vector>,
+        workspace: &mut PathWorkspace<S::Vector>,
+        observer: Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
+    ) -> Result<Path<S::Vector>, LinkageError> {
+        let mut options = checked(options)?;
+        for (index, waypoint) in waypoints.iter().enumerate() {
+            self.check(index, waypoint.as_ref())?;
+        }
+        let last = waypoints.len().checked_sub(1).ok_or(LinkageError::EmptyPath)?;
+        if last == 0 {
+            options.max_time = Scalar::ZERO;
+        }
+        let edge = |index: usize| {
+            let [from, to] = [index, last.min(index + 1)].map(|waypoint| waypoints[waypoint].as_ref());
+            PathEdge { from, to }
+        };
+        self.watched_path(last.max(1), edge, scene, options, workspace, observer)
+    }
+
+    fn watched_path<O: SupportMap<Vector = S::Vector>, E: JointTrajectory<Scalar = ScalarOf<S>> + Copy>(
+        &self,
+        edges: usize,
+        edge_at: impl Fn(usize) -> E,
         scene: &Scene<O>,
         options: MotionCastOptions<S::Vector>,
         workspace: &mut PathWorkspace<S::Vector>,
         mut observer: Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<Path<S::Vector>, LinkageError> {
         // A contact at the beginning of a part of an edge is a contact, whatever was before.
-        let options = MotionCastOptions { start_in_contact: StartInContact::Report, ..checked(options)? };
-        for (index, waypoint) in waypoints.iter().enumerate() {
-            self.check(index, waypoint.as_ref())?;
-        }
+        let options = MotionCastOptions { start_in_contact: StartInContact::Report, ..options };
         workspace.half_spaces.clear();
         workspace.half_spaces.extend(scene.all().half_spaces().map(|(index, half_space)| (index, half_space.plane())));
         let (mut parts, mut casts, mut open) = (0, 0, None);
         // If an observer is to see the proof, everything is cast.
         let target = if observer.is_some() { Float::infinity() } else { options.target_distance };
-        let last = waypoints.len().checked_sub(1).ok_or(LinkageError::EmptyPath)?;
-        for index in 0..last.max(1) {
+        for index in 0..edges {
             let rest = options.max_time - Scalar::from_f64(index as f64);
             if index > 0 && !(rest > Scalar::ZERO) {
                 break;
             }
-            let duration = if last > 0 { rest.min(Scalar::ONE) } else { Scalar::ZERO };
-            let [from, to] = [index, last.min(index + 1)].map(|waypoint| waypoints[waypoint].as_ref());
-            let edge = PathEdge { from, to };
+            let (duration, edge) = (rest.min(Scalar::ONE), edge_at(index));
             let mut first: Option<PathContact<S::Vector>> = None;
             let (skeleton, tree, space) = (&self.skeleton, scene.tree(), &mut *workspace);
             let mut sweep = Sweep { skeleton, tree, edge, target, space, end: duration, parts: 0 };
@@ -123,7 +209,7 @@ impl<S: SupportMap> Linkage<S> {
             parts += sweep.parts;
             let found = open.map_or(first, |open| Some(goes_on(open, first)));
             // What rounding leaves open at a waypoint, the next edge may decide.
-            let may_go_on = open.is_none() && index + 1 < last && rest > Scalar::ONE;
+            let may_go_on = open.is_none() && index + 1 < edges && rest > Scalar::ONE;
             if may_go_on && found.is_some_and(|found| is_open_at_end(&found)) {
                 open = found;
             } else if found.is_some() {
@@ -134,11 +220,11 @@ impl<S: SupportMap> Linkage<S> {
     }
 
     /// Casts a body of a link against a body that may come near it on an edge; `None` for a miss.
-    fn cast<O: SupportMap<Vector = S::Vector>>(
+    fn cast<O: SupportMap<Vector = S::Vector>, E: JointTrajectory<Scalar = ScalarOf<S>> + Copy>(
         &self,
         edge: usize,
         near: &Near<ScalarOf<S>>,
-        motion: &LinkMotion<'_, S::Vector>,
+        motion: &LinkMotion<'_, S::Vector, E>,
         (against, at): (&Body<O>, Option<S::Vector>),
         options: MotionCastOptions<S::Vector>,
         observer: &mut Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
@@ -176,7 +262,7 @@ impl<S: SupportMap> Linkage<S> {
         if let Outcome::Hit(hit) = &mut cast.outcome {
             if let Some(base) = base {
                 // The contact was found in the frame of the second link.
-                let (_, frame) = motion.edge.place(&self.skeleton.views[base].route, from + hit.time);
+                let (_, frame) = self.skeleton.views[base].route.place(motion.edge, from + hit.time);
                 (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
             }
             hit.time = (from + hit.time).min(cast.upper).max(cast.lower);

@@ -14,8 +14,9 @@ use num_traits::Float as _;
 
 use super::frame::{LinkFrame, epsilons};
 use super::joint::Moving;
-use super::link_motion::{LinkMotion, PathEdge};
+use super::link_motion::LinkMotion;
 use super::linkage::{LinkView, Skeleton};
+use super::trajectory::JointTrajectory;
 use crate::RayCastError;
 use crate::half_space::Plane;
 use crate::motion::Bounds;
@@ -67,10 +68,10 @@ impl<V: Vector> PathWorkspace<V> {
 }
 
 /// The search for what comes near along an edge.
-pub(super) struct Sweep<'s, V: Vector> {
+pub(super) struct Sweep<'s, V: Vector, E> {
     pub(super) skeleton: &'s Skeleton<V>,
     pub(super) tree: &'s Bvh<V>,
-    pub(super) edge: PathEdge<'s, V::Scalar>,
+    pub(super) edge: E,
     /// The distance within which bodies count as near; infinite if all of them are to be shown.
     pub(super) target: V::Scalar,
     pub(super) space: &'s mut PathWorkspace<V>,
@@ -91,20 +92,22 @@ struct SweptBall<V: Vector> {
     drift: V::Scalar,
 }
 
-impl<'s, V: Vector> Sweep<'s, V> {
+impl<'s, V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> Sweep<'s, V, E> {
     /// Calls `show` for each two bodies that may come near one another until the end. They come in the order of the
     /// times when they begin to be near, within each quarter of the edge. The call returns a time after which no
     /// contact can be the first, with which the search ends.
     pub(super) fn run(
         &mut self,
-        show: &mut impl FnMut(&Near<V::Scalar>, LinkMotion<'s, V>) -> Result<V::Scalar, RayCastError>,
+        show: &mut impl FnMut(&Near<V::Scalar>, LinkMotion<'s, V, E>) -> Result<V::Scalar, RayCastError>,
     ) -> Result<(), RayCastError> {
         let (space, views) = (&mut *self.space, self.skeleton.views.len());
         space.near.clear();
         space.views.clear();
         space.views.extend(0..views);
         space.bounds.clear();
-        space.bounds.extend(self.skeleton.views.iter().map(|view| self.edge.bounds(&view.route)));
+        space
+            .bounds
+            .extend(self.skeleton.views.iter().map(|view| view.route.bounds(|column| self.edge.bounds(column))));
         self.visit([V::Scalar::ZERO, self.end], 0, 0..views, show)
     }
 
@@ -114,7 +117,7 @@ impl<'s, V: Vector> Sweep<'s, V> {
         times @ [from, to]: [V::Scalar; 2],
         depth: u32,
         views: Range<usize>,
-        show: &mut impl FnMut(&Near<V::Scalar>, LinkMotion<'s, V>) -> Result<V::Scalar, RayCastError>,
+        show: &mut impl FnMut(&Near<V::Scalar>, LinkMotion<'s, V, E>) -> Result<V::Scalar, RayCastError>,
     ) -> Result<(), RayCastError> {
         if from > self.end {
             return Ok(());
@@ -156,7 +159,7 @@ impl<'s, V: Vector> Sweep<'s, V> {
         self.space.moving.clear();
         for (before, stage) in &self.skeleton.stages {
             let carrier = before.map_or(Moving::WORLD, |before| self.space.moving[before]);
-            self.space.moving.push(carrier.beyond(stage, self.edge.at(stage.column, time)));
+            self.space.moving.push(carrier.beyond(stage, self.edge.state(stage.column, time)));
         }
     }
 
@@ -166,7 +169,7 @@ impl<'s, V: Vector> Sweep<'s, V> {
         let LinkView { link, base, ref route } = self.skeleton.views[index];
         let (link, base) = (&self.skeleton.links[link], base.map(|base| &self.skeleton.links[base]));
         let placed = match base {
-            Some(_) => self.edge.place(route, from + half),
+            Some(_) => route.place(self.edge, from + half),
             None => {
                 let moving = route.stages.last().map_or(Moving::WORLD, |stage| self.space.moving[stage.column]);
                 (moving, moving.frame.then(&route.tail))
@@ -228,7 +231,8 @@ impl<V: Vector> SweptBall<V> {
         let way = way.min(V::splat(always));
         let drift = way.norm().min(always);
         // The error of the ball's place, and of the derivatives that these lengths are made of.
-        let lost = (frame.turn_error + epsilons(64.0)) * (always + bent + distance);
+        let uneven = bounds.acceleration.of(distance) * squared;
+        let lost = (frame.turn_error + epsilons(64.0)) * (always + uneven + bent + distance);
         let room = ball.radius + frame.error_of(ball.center.norm()) + lost;
         Self { center, along: (way + V::splat(room)) * above::<V>(), radius: (room + drift) * above::<V>(), drift }
     }

@@ -5,7 +5,7 @@ use convex_support::{BoundingSphere, Matrix, Scalar, Vector};
 
 use super::rigid_motion::RigidMotion;
 use super::trajectory::{Displacement, Trajectory, TurningPlane};
-use crate::axial;
+use crate::{JointBounds, axial};
 
 /// The motion of a body at the end of a chain of joints, each of which moves at a constant rate: a link of a robot
 /// along a straight edge in joint space.
@@ -64,9 +64,9 @@ impl<'j, V: Vector> ChainMotion<'j, V> {
             if w > V::Scalar::ZERO {
                 bounds.lengthen((near - joint.center).norm());
                 near = joint.center;
-                bounds.turn(w, V::Scalar::ZERO);
+                bounds.turn(JointBounds::constant(w), V::Scalar::ZERO);
             }
-            bounds.slide(v, v * end);
+            bounds.slide(JointBounds { value: v * end, ..JointBounds::constant(v) });
         }
         bounds
     }
@@ -139,6 +139,8 @@ pub(crate) struct Bounds<S> {
     pub(crate) jerk: Linear<S>,
     /// The sum of the rates of the joints that turn: no angular velocity is larger.
     pub(crate) spin: S,
+    /// The sums of the bounds on the acceleration and the jerk of the values of the joints that turn.
+    pub(crate) spin_up: [S; 2],
     /// How far a point may be from the origin of the joint that was added last.
     reach: Linear<S>,
 }
@@ -159,12 +161,21 @@ impl<S: Scalar> Linear<S> {
 }
 
 /// Joints are added from the last one to the first. Let `y` be a point as the joints so far have moved it, with the
-/// bounds `s`, `a` and `j` on its speed, acceleration and jerk. A joint that turns at the rate `w` takes it to
-/// `R(wt)·y`, and the derivatives of this product are bounded by
+/// bounds `s`, `a` and `j` on its speed, acceleration and jerk. A joint that turns by `q(t)` takes it to `R(q)·y`. With
+/// `A·y = axis × y` the derivatives of `R` are
 ///
-/// > s′ = w·l + s,   a′ = w²·l + 2w·s + a,   j′ = w³·l + 3w²·s + 3w·a + j,
+/// > R′ = q′·A·R,   R″ = (q″·A + q′²·A²)·R,   R‴ = (q‴·A + 3q′·q″·A² + q′³·A³)·R.
 ///
-/// where `l` is the distance of `y` from the axis. A joint that slides adds its rate to `s` alone.
+/// `A` makes nothing longer. So if `w`, `α` and `β` bound `|q′|`, `|q″|` and `|q‴|`, these take `y` to vectors no longer
+/// than `w₁·l`, `w₂·l` and `w₃·l`, where `l` is the distance of `y` from the axis, and
+///
+/// > w₁ = w,   w₂ = w² + α,   w₃ = w³ + 3w·α + β.
+///
+/// The derivatives of the product `R·y` are then bounded by
+///
+/// > s′ = w₁·l + s,   a′ = w₂·l + 2w₁·s + a,   j′ = w₃·l + 3w₂·s + 3w₁·a + j.
+///
+/// A joint that slides adds `w`, `α` and `β` to `s`, `a` and `j`.
 impl<S: Scalar> Bounds<S> {
     /// The bounds for points that no joint moves.
     pub(crate) const REST: Self = Self {
@@ -172,6 +183,7 @@ impl<S: Scalar> Bounds<S> {
         acceleration: Linear::ZERO,
         jerk: Linear::ZERO,
         spin: S::ZERO,
+        spin_up: [S::ZERO; 2],
         reach: Linear { per_length: S::ONE, ..Linear::ZERO },
     };
 
@@ -188,20 +200,25 @@ impl<S: Scalar> Bounds<S> {
         self.reach.at_origin += arm;
     }
 
-    /// Adds a joint that turns at the rate `w`, and from whose axis the joint that was added before is `across` away.
-    pub(crate) fn turn(&mut self, w: S, across: S) {
+    /// Adds a joint that turns, and from whose axis the joint that was added before is `across` away.
+    pub(crate) fn turn(&mut self, JointBounds { rate: w, acceleration, jerk, .. }: JointBounds<S>, across: S) {
         let (two, three) = (S::from_f64(2.0), S::from_f64(3.0));
         let lever = Linear { at_origin: self.reach.at_origin + across, ..self.reach };
-        self.jerk = self.jerk.plus(self.acceleration, three * w).plus(self.speed, three * w * w).plus(lever, w * w * w);
-        self.acceleration = self.acceleration.plus(self.speed, two * w).plus(lever, w * w);
+        let (second, third) = (w * w + acceleration, w * w * w + (three * w * acceleration + jerk));
+        let by_speed = three * w * w + three * acceleration;
+        self.jerk = self.jerk.plus(self.acceleration, three * w).plus(self.speed, by_speed).plus(lever, third);
+        self.acceleration = self.acceleration.plus(self.speed, two * w).plus(lever, second);
         self.speed = self.speed.plus(lever, w);
         self.spin += w;
+        self.spin_up = [self.spin_up[0] + acceleration, self.spin_up[1] + jerk];
     }
 
-    /// Adds a joint that slides, by no more than `way`.
-    pub(crate) fn slide(&mut self, rate: S, way: S) {
+    /// Adds a joint that slides.
+    pub(crate) fn slide(&mut self, JointBounds { value, rate, acceleration, jerk }: JointBounds<S>) {
         self.speed.at_origin += rate;
-        self.lengthen(way);
+        self.acceleration.at_origin += acceleration;
+        self.jerk.at_origin += jerk;
+        self.lengthen(value);
     }
 }
 
@@ -209,7 +226,7 @@ impl<S: Scalar> Bounds<S> {
 mod tests {
     use convex_support::glam::{DVec2, Vec2};
 
-    use super::{Bounds, ChainMotion};
+    use super::{Bounds, ChainMotion, JointBounds};
     use crate::{RigidMotion, Trajectory as _};
 
     /// The way from joint to joint is short, however far away both are. If the pivot of one were added to how far it
@@ -233,10 +250,10 @@ mod tests {
     #[test]
     fn bounds_of_one_turning_joint_are_those_of_a_circle() {
         let mut bounds = Bounds::<f64>::REST;
-        bounds.turn(3.0, 0.0);
+        bounds.turn(JointBounds::constant(3.0), 0.0);
         assert_eq!([bounds.speed.of(2.0), bounds.acceleration.of(2.0), bounds.jerk.of(2.0)], [6.0, 18.0, 54.0]);
         assert_eq!(bounds.spin, 3.0);
-        bounds.slide(0.5, 0.0);
+        bounds.slide(JointBounds::constant(0.5));
         assert_eq!([bounds.speed.of(2.0), bounds.acceleration.of(2.0)], [6.5, 18.0]);
     }
 }

@@ -43,7 +43,6 @@ use super::placed::{Corners, Placed};
 use super::rough_look::times;
 use super::trajectory::TurningPlane;
 use crate::SignedDistanceOptions;
-use crate::body::{Pair, Shapes as _};
 use crate::gjk::{Frame, Gjk, GjkOptions, gjk, rounding};
 use crate::observer::Observer;
 use crate::shape::WithoutLines;
@@ -123,8 +122,7 @@ impl<V: Vector> MovingPair<'_, V> {
 
     /// The corners of the face of the difference that is nearest to zero, if they are as many as there are dimensions.
     fn closest_corners(&self, placed: &Placed<'_, V>, axis: V) -> Option<Corners<V>> {
-        let cores = placed.cores();
-        let mut pair = Pair::new(placed, cores.each_ref());
+        let mut pair = placed.pair();
         let size = pair.size(placed.offset);
         // A body with a radius has an inside.
         if pair.radius() > Scalar::ZERO || !is_moderate(size) {
@@ -157,8 +155,7 @@ impl<V: Vector> MovingPair<'_, V> {
 
 /// A bound on the error of a point of the difference.
 fn error_of<V: Vector>(placed: &Placed<'_, V>) -> V::Scalar {
-    let cores = placed.cores();
-    let pair = Pair::new(placed, cores.each_ref());
+    let pair = placed.pair();
     rounding(pair.size(placed.offset)) + pair.error()
 }
 

@@ -13,6 +13,7 @@ use super::moving_body::{Block, MovingBody};
 use super::placed::{Corners, Placed};
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::body::{CastBody, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::distance::distance_of_any;
 use crate::extra::{Extra, in_static};
 use crate::gjk::rounding;
 use crate::linear_cast::{AtStart, by_search};
@@ -21,9 +22,7 @@ use crate::separation::Closer;
 use crate::shape::Shape;
 use crate::signed_distance::rough_signed_distance;
 use crate::unit::{is_moderate, length_bound, lost_to_underflow};
-use crate::{
-    DistanceOptions, LinearCast, LinearCastOptions, Motion, MotionCastOptions, SignedDistanceOptions, distance,
-};
+use crate::{DistanceOptions, LinearCast, LinearCastOptions, Motion, MotionCastOptions, SignedDistanceOptions};
 
 /// Two bodies and their motions.
 pub(super) struct MovingPair<'s, V: Vector> {
@@ -226,8 +225,7 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
 
     fn level(&self, time: V::Scalar, normal: V) -> (V::Scalar, V::Scalar) {
         let placed = &self.placed(time);
-        let cores = placed.cores();
-        let mut pair = Pair::new(placed, cores.each_ref());
+        let mut pair = placed.pair();
         let size = pair.size(placed.offset);
         // If the size is out of range, nothing is known.
         if !is_moderate(size) {
@@ -283,7 +281,7 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
     fn common_point(&self, there: &Instant<V>) -> V {
         let placed = self.placed(there.time);
         let wanted = DistanceOptions { extra: self.extra.part(|extra| extra.closer), ..DistanceOptions::lean() };
-        let answer = distance(&placed.a, &placed.b, wanted);
+        let answer = distance_of_any(&placed.a, &placed.b, wanted);
         self.count(answer.iterations);
         answer.point_b + placed.place
     }

@@ -18,7 +18,7 @@ use num_traits::Float;
 use super::instant::{Instant, Limits, NEAR};
 use super::moving_pair::MovingPair;
 use super::placed::{CornerFace, Placed};
-use crate::body::{Pair, Shapes as _, TracedSupport as _};
+use crate::body::TracedSupport as _;
 use crate::gjk::rounding;
 use crate::separation::{Cores, Uncertainty, slack};
 use crate::simplex::{MAX_POINTS, project_rarely};
@@ -47,8 +47,7 @@ impl<V: Vector> MovingPair<'_, V> {
         is_close: bool,
     ) -> Option<Instant<V>> {
         let placed = self.placed_here(time);
-        let cores = placed.cores();
-        let mut pair = Pair::new(&placed, cores.each_ref());
+        let mut pair = placed.pair();
         let offset = placed.offset;
         let size = pair.size(offset);
         let points = pair.closest_points(offset, size)?;
@@ -95,8 +94,7 @@ impl<V: Vector> MovingPair<'_, V> {
     /// The bodies at a time, as exactly as they can be known, if the corners that were closest at the last look are so
     /// still and prove that the bodies are apart or that they overlap.
     pub(super) fn near_look(&self, placed: &Placed<'_, V>, axis: V) -> Option<Instant<V>> {
-        let cores = placed.cores();
-        let pair = Pair::new(placed, cores.each_ref());
+        let pair = placed.pair();
         let size = pair.size(placed.offset);
         if !is_moderate(size) {
             return None;

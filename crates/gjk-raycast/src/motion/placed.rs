@@ -4,7 +4,7 @@ use core::cell::Cell;
 
 use convex_support::{Core, CoreKind, Feature, Hint, Matrix, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
-use crate::body::{Aligned, Of, PointPair, Shapes};
+use crate::body::{Aligned, Of, Pair, PointPair, Shapes};
 use crate::separation::across_corners;
 use crate::shape::Shape;
 use crate::simplex::{MAX_POINTS, project};
@@ -116,6 +116,14 @@ pub(super) struct Placed<'s, V: Vector> {
     pub(super) place: V,
 }
 
+impl<V: Vector> Placed<'_, V> {
+    /// Their difference.
+    #[inline(always)]
+    pub(super) fn pair(&self) -> Pair<'_, Self> {
+        Pair::new(self, [&self.a.core, &self.b.core])
+    }
+}
+
 impl<V: Vector> Shapes for Placed<'_, V> {
     type Vector = V;
 
@@ -136,11 +144,8 @@ impl<V: Vector> Shapes for Placed<'_, V> {
         [Aligned(self.a.turned(a)), Aligned(self.b.turned(b))]
     }
 
-    fn support_hessian(&self, of: Of, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
-        match of {
-            Of::A => self.a.core_support_hessian(direction, changes),
-            Of::B => self.b.core_support_hessian(direction, changes),
-        }
+    fn support_hessians(&self, [along_a, along_b]: [V; 2], changes: [V; 2]) -> [[V::Scalar; 3]; 2] {
+        [self.a.core_support_hessian(along_a, changes), self.b.core_support_hessian(along_b, changes)]
     }
 
     #[inline(always)]

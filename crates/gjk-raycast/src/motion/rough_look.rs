@@ -6,7 +6,7 @@ use super::instant::{Instant, NEAR};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::SignedDistanceOptions;
-use crate::body::{Pair, PointPair, Shapes as _, TracedSupport as _};
+use crate::body::{PointPair, TracedSupport as _};
 use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk};
 use crate::observer::Observer;
 use crate::unit::is_moderate;
@@ -28,8 +28,7 @@ impl<V: Vector> MovingPair<'_, V> {
     /// ends the search. If the bodies overlap by more than rounding, the best plane known tells roughly how deep, which
     /// is enough for the search of the motion.
     pub(super) fn roughly(&self, placed: &Placed<'_, V>, axis: V, limit: V::Scalar) -> Option<Instant<V>> {
-        let cores = placed.cores();
-        let pair = &mut Pair::new(placed, cores.each_ref());
+        let pair = &mut placed.pair();
         let size = pair.size(placed.offset);
         let kept = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
         // If the cores have passed through one another, the vector to the face points the other way.

@@ -42,7 +42,6 @@ pub struct Among<'s, S: SupportMap> {
 type Picks<'f> = dyn Fn(usize) -> bool + Sync + 'f;
 /// Whether the pair of these indices is left out.
 type Pairs<'f> = dyn Fn(usize, usize) -> bool + Sync + 'f;
-/// Whether to stop.
 type StopFlag<'f> = dyn Fn() -> bool + Sync + 'f;
 
 impl<S: SupportMap> Clone for Among<'_, S> {

@@ -34,7 +34,6 @@ impl<S: SupportMap> Body<S> {
         }
     }
 
-    /// The distance from a shape to this body.
     #[inline]
     pub(super) fn distance_from<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
@@ -88,7 +87,6 @@ impl<S: SupportMap> Body<S> {
         }
     }
 
-    /// The cast of a shape against this body.
     #[inline]
     pub(super) fn linear_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,

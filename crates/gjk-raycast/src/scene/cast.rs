@@ -7,7 +7,7 @@ use convex_support::{Aabb, Bound, Scalar, ScalarOf, SupportMap, SweptBox, Vector
 use num_traits::Float;
 
 use super::body::seen_from;
-use super::moving_balls::MovingBalls;
+use super::bounds::MovingBalls;
 use super::result::{
     BodyHit, SceneAnyHit, SceneCast, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, reuse,
 };

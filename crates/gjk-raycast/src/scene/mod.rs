@@ -2,14 +2,12 @@
 
 mod among;
 mod body;
+mod bounds;
 mod cast;
 mod contacts;
-mod height_bound;
-mod moving_balls;
 mod nearest;
 mod pairs;
 mod result;
-mod seams;
 
 use alloc::vec::Vec;
 use core::error::Error;

@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 
 use convex_support::{PairSearch, ScalarOf, SupportMap, Vector};
 
-use super::height_bound::HeightBound;
+use super::bounds::HeightBound;
 use super::result::{PairContact, PairDistance, Work, reuse};
 use super::{Among, Body, Scene};
 use crate::{DistanceOptions, distance};
@@ -78,7 +78,6 @@ impl<S: SupportMap> Among<'_, S> {
         asking.finish()
     }
 
-    /// [`find_pairs`](Self::find_pairs) on all threads.
     #[cfg(feature = "rayon")]
     pub(super) fn par_find_pairs<P: OfPair + Send>(
         &self,
@@ -116,7 +115,6 @@ impl<S: SupportMap> Among<'_, S> {
 
 /// An element of a list of pairs.
 pub(super) trait OfPair {
-    /// The indices of the bodies.
     fn indices(&self) -> [usize; 2];
 }
 

@@ -77,7 +77,6 @@ pub struct BodyHit<H, S: Scalar> {
 }
 
 impl<H: Copy, S: Scalar> BodyHit<H, S> {
-    /// The hit of a body's cast, if it is one.
     pub(super) fn of<V: Vector<Scalar = S>>(body: usize, cast: &Cast<H, V>) -> Option<Self> {
         let &Cast { lower, upper, status, .. } = cast;
         cast.outcome.hit().map(|hit| Self { body, hit, lower, upper, status })

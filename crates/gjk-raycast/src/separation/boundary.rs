@@ -4,13 +4,14 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::any::{Any, TypeId};
 
+use convex_support::numerics::orientation::{six_volumes, twice_area};
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::cores::Vertex;
-use super::orientation::is_beyond;
-use crate::double::{Vec3, cross, dot};
+use super::faces::turned_right;
+use crate::double::{LEAST, Vec3, cross, dot};
 use crate::simplex::{MAX_POINTS, nearest_face};
 
 /// Corners of a facet, of which a polygon's has two and a polyhedron's three.
@@ -24,9 +25,6 @@ const TILT: f64 = 8.0;
 const ACUTE: f64 = 0.125;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Squares below this may have underflowed.
-const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
-
 /// The most facets of a walk to one that a point is beyond.
 const MAX_WALK: usize = 32;
 
@@ -38,7 +36,6 @@ const FACETS: usize = 2 * VERTICES;
 /// The corner after each, and the one after that.
 const NEXT: [usize; 4] = [1, 2, 0, 1];
 
-/// No facet.
 const NONE: u16 = u16::MAX;
 
 /// A facet: an edge of a polygon or a triangle of a polyhedron, its corners counterclockwise as seen from outside.
@@ -47,7 +44,6 @@ pub(super) struct Facet<V: Vector> {
     corners: [u16; MAX_CORNERS],
     /// The facets across the ridges opposite to each corner.
     across: [u16; MAX_CORNERS],
-    /// The unit outward normal.
     pub(super) normal: V,
     /// How far, by the rounding of the normal, a point at unit distance may seem above or below the facet.
     tilt: V::Scalar,
@@ -214,7 +210,6 @@ impl<V: Vector> Boundary<V> {
         true
     }
 
-    /// Empties the polytope.
     #[cold]
     fn clear(&mut self) {
         self.vertices.clear();
@@ -223,7 +218,6 @@ impl<V: Vector> Boundary<V> {
         (self.insertions, self.last) = (0, 0);
     }
 
-    /// Adds a vertex, and room for so many facets.
     #[inline(never)]
     fn grow(&mut self, &vertex: &Vertex<V>, facets: usize) {
         let none = [NONE; MAX_CORNERS];
@@ -267,19 +261,16 @@ impl<V: Vector> Boundary<V> {
         self.facets[index].corners
     }
 
-    /// The vertex at a corner.
     #[inline]
     pub(super) fn vertex(&self, corner: u16) -> Vertex<V> {
         self.vertices[usize::from(corner)].vertex
     }
 
-    /// The points of the vertices of a facet.
     #[inline]
     pub(super) fn corner_points(&self, index: usize) -> [V; MAX_CORNERS] {
         points(&self.vertices, self.facets[index].corners)
     }
 
-    /// The number of facets.
     pub(super) fn len(&self) -> usize {
         self.inner.iter().filter(|inner| inner.is_finite()).count()
     }
@@ -516,9 +507,7 @@ fn sliver_normal<V: Vector>(corner: V) -> (V, V::Scalar) {
 
 /// The unit normal of an edge, to the right of it, and its rounding for a point at unit distance.
 fn edge_normal<V: Vector>([a, b, _]: [V; MAX_CORNERS]) -> (V, V::Scalar) {
-    let edge = b - a;
-    let turned = [edge.get(1), -edge.get(0)];
-    let normal = V::from_fn(|i| turned[i]).unit();
+    let normal = turned_right(b - a).unit();
     normal.map_or_else(|| sliver_normal(a), |normal| (normal, V::Scalar::from_f64(TILT) * V::Scalar::EPSILON))
 }
 
@@ -575,9 +564,20 @@ fn edge<V: Vector>(from: V, to: V) -> Vec3 {
     [along(0), along(1), along(2)]
 }
 
+/// Whether a point lies strictly beyond a facet of two or three corners, that are counterclockwise as seen from
+/// outside.
+fn is_beyond<V: Vector>(corners: &[V], point: V) -> bool {
+    let flat = |p: V| [p.get(0).as_f64(), p.get(1).as_f64()];
+    match *corners {
+        [a, b] => twice_area([a, b, point].map(flat)) < 0.0,
+        [a, b, c] => six_volumes([a, b, c, point].map(|p| [0, 1, 2].map(|i| p.get(i).as_f64()))) > 0.0,
+        _ => false,
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use convex_support::glam::DVec3;
+    use convex_support::glam::{DVec2, DVec3};
 
     use super::*;
     use crate::body::PointPair;
@@ -620,5 +620,19 @@ mod tests {
     fn a_flat_simplex_is_no_polytope() {
         let square = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y].map(vertex);
         assert!(!Boundary::new(f64::EPSILON).begin(&square, 0.0));
+    }
+
+    /// The points are so near to the line `y = x` that the determinant rounds to zero, or to the other sign.
+    #[test]
+    fn a_point_within_rounding_of_a_facet_is_on_its_true_side() {
+        let (a, b) = (DVec2::splat(12.0), DVec2::splat(24.0));
+        let at = |i: u32| 0.5 + f64::from(i) * f64::EPSILON / 2.0;
+        for i in 0..32 {
+            for j in 0..32 {
+                assert_eq!(is_beyond(&[a, b], DVec2::new(at(i), at(j))), i > j, "{i} {j}");
+                let corners = [DVec3::splat(12.0), DVec3::new(24.0, 24.0, 0.0), DVec3::splat(24.0)];
+                assert_eq!(is_beyond(&corners, DVec3::new(at(i), at(j), 3.0)), i > j, "{i} {j} in space");
+            }
+        }
     }
 }

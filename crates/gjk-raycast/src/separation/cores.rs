@@ -134,7 +134,6 @@ impl<V: Vector> Uncertainty<V> {
         Self { shapes, lost, lost_in_offset: Scalar::ZERO }
     }
 
-    /// Along a unit vector.
     #[inline]
     pub(crate) fn along(&self, n: V) -> V::Scalar {
         let n = n.abs();
@@ -142,7 +141,6 @@ impl<V: Vector> Uncertainty<V> {
         of_shapes.fold(n.dot(self.lost), |sum, error| sum + error)
     }
 
-    /// In any direction.
     pub(crate) fn length(&self) -> V::Scalar {
         self.shapes.iter().fold(self.lost.norm(), |sum, shape| sum + shape.error_length)
     }
@@ -287,7 +285,6 @@ impl<'a, V: Vector> Cores<'a, V> {
         true
     }
 
-    /// Whether they were made smaller.
     #[inline(always)]
     pub(super) fn is_peeled(&self) -> bool {
         self.pair.peeled != [Scalar::ZERO; 2]

@@ -4,39 +4,33 @@
 //! search has three means, in this order, and ends at the first that answers the question: GJK on the cores, a second
 //! measurement near contact, and an expanding polytope. For a depth, the closed form for two boxes comes before them.
 
-mod basin;
 mod boundary;
 mod cores;
-mod direct;
 mod expansion;
 mod faces;
-mod first_polytope;
-mod met;
 mod near_contact;
 mod newton;
-mod orientation;
 mod room;
 mod witness;
 mod zonotope;
 
 use convex_support::numerics::bound::least;
-use convex_support::{Scalar, Vector};
+use convex_support::{Core, Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Pair, PointPair};
+use crate::body::{Pair, PointPair, Shapes, TracedSupport as _};
 use crate::extra::{Extra, in_static};
-use crate::gjk::{End, Gjk};
+use crate::gjk::{End, Gjk, rounding};
 use crate::observer::Observer;
-use crate::{Distance, SignedDistance, SignedDistanceOptions, Status, SubAlgorithm};
-use cores::{ClosedForm, WayOut};
+use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, Status, SubAlgorithm};
+use cores::{ClosedForm, WayOut, error_of_points};
 pub(crate) use cores::{Cores, Uncertainty, slack};
-pub(crate) use direct::direct;
 use expansion::{Expanded, expand};
 pub(crate) use faces::is_around_zero;
-use met::MetPoint;
+use near_contact::NEAR;
 pub(crate) use near_contact::{NearContact, is_near_contact, near_contact_of};
 pub(crate) use room::{FromContact, across_corners, look_after};
-use witness::Ends;
+use witness::{Ends, MetPoint};
 
 /// The question about two bodies, and when the search may stop.
 pub(crate) struct Wanted<V: Vector> {
@@ -236,7 +230,6 @@ fn reach_closely<V: Vector>(
 }
 
 impl<V: Vector> Separation<V> {
-    /// By GJK alone.
     #[inline(always)]
     fn of_gjk(cores: &Cores<'_, V>, state: &mut Gjk<V>, end: End) -> Self {
         let MetPoint { points, reached, .. } = MetPoint::new(cores, state);
@@ -285,7 +278,6 @@ impl<V: Vector> Separation<V> {
         }
     }
 
-    /// In closed form.
     fn of_closed_form(ClosedForm { u, depth, inner, outer, points }: ClosedForm<V>) -> Self {
         Self { u, depth, inner, outer, axis: -u, points, overlap: None, status: Status::Converged, unexpanded: 0 }
     }
@@ -339,7 +331,6 @@ impl<V: Vector> Separation<V> {
         }
     }
 
-    /// The status of the search, by its bounds.
     #[inline(always)]
     fn status(&self, is_bounded: bool, is_narrow: bool) -> Status {
         match self.status {
@@ -357,7 +348,6 @@ impl<V: Vector> Separation<V> {
         [core_a.origin + a * scale + self.u * from, core_b.origin + b * scale - self.u * to]
     }
 
-    /// The signed distance.
     #[inline]
     pub(crate) fn signed_distance(&self, cores: &Cores<'_, V>) -> SignedDistance<V> {
         let (lower, upper, is_narrow) = self.bounds(cores);
@@ -427,6 +417,57 @@ impl<V: Vector> Separation<V> {
         let share = |of: V::Scalar| v * (of / radius).min(Scalar::ONE);
         [a - share(cores.radii[0]), b + share(cores.radii[1])]
     }
+}
+
+/// The signed distance of shapes whose cores are apart by more than a few errors, and whose closest points are known
+/// in closed form, such as a ball and a box, whether they overlap or not. There is nothing to search, and everything
+/// is computed in the world's unit. Near contact they are measured again.
+///
+/// The plane of the support point across the vector between those points is as far as they are, to rounding;
+/// otherwise the search takes over.
+#[inline(always)]
+pub(crate) fn direct<T: Shapes + ?Sized>(
+    shapes: &T,
+    cores: [Core<T::Vector>; 2],
+    max_iterations: usize,
+    observer: &mut Observer<'_, T::Vector>,
+) -> Option<SignedDistance<T::Vector>> {
+    let mut pair = Pair::new(shapes, cores.each_ref());
+    let offset = pair.core_a.origin - pair.core_b.origin;
+    let size = pair.size(offset);
+    let points = pair.closest_points(offset, size)?;
+    let v = pair.vector_between(points, offset);
+    let (length, radius, error) = (v.length(), pair.radius(), error_of_points(&pair, size));
+    // The gap below which the distance is measured again; it allows for more rounding.
+    let near = (rounding(size) + pair.error()) * Scalar::from_f64(NEAR);
+    // NaN is left to the search.
+    if !(length.min((length - radius).abs()) > near) || max_iterations == 0 {
+        return None;
+    }
+    let w = pair.support(-v).0 + offset;
+    let lower = (v.dot(w) / length).min(length);
+    if !(length - lower <= rounding(size)) {
+        return None;
+    }
+    let (scale, upper) = (Scalar::ONE, length);
+    let simplex = [v];
+    observer.show(|| Iterate { iteration: 0, simplex: &simplex, v, w, scale, lower, upper });
+    let normal = v / length;
+    let signed_distance = length - radius;
+    // What a vector is wrong by across adds no more to its length than that squared, by twice the length.
+    let (lower, upper) = (lower - error - radius, length + error + error * (error / length) - radius);
+    Some(SignedDistance {
+        signed_distance,
+        lower: lower - slack(lower, radius),
+        upper: upper + slack(upper, radius),
+        normal,
+        point_a: pair.core_a.origin + points.a - normal * pair.core_a.radius,
+        point_b: pair.core_b.origin + points.b + normal * pair.core_b.radius,
+        overlap: signed_distance <= Scalar::ZERO,
+        status: Status::Converged,
+        iterations: 1,
+        unexpanded: 0,
+    })
 }
 
 #[cfg(test)]

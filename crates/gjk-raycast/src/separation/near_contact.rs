@@ -18,7 +18,6 @@ use crate::body::{AnyPair, Both, CastBody as _, Pair, PointPair, TracedSupport a
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
 use crate::shape::Shape;
-use crate::simplex::MAX_POINTS;
 
 /// How many errors of distance or depth still count as near contact.
 pub(crate) const NEAR: f64 = 16.0;
@@ -56,7 +55,6 @@ pub(crate) struct NearContact<V: Vector> {
 }
 
 impl<V: Vector> NearContact<V> {
-    /// Whether the bodies are certainly apart.
     pub(crate) fn is_separated(&self) -> bool {
         self.lower > V::Scalar::ZERO
     }
@@ -87,7 +85,6 @@ impl<V: Vector> NearContact<V> {
         self.upper - self.gap <= error + error
     }
 
-    /// The same for the bodies in the other order.
     fn reversed(self) -> Self {
         let frame = Frame { offset: -self.frame.offset, ..self.frame };
         Self { frame, points: self.points.reversed(), normal: -self.normal, ..self }
@@ -197,7 +194,6 @@ struct SupportPlane<V: Vector> {
 }
 
 impl<V: Vector> SupportPlane<V> {
-    /// It is certainly as far as this.
     fn certain(&self) -> V::Scalar {
         self.level - self.error
     }
@@ -213,29 +209,18 @@ impl<V: Vector> SupportPlane<V> {
     }
 }
 
-/// The result of a search.
-struct Found<V: Vector> {
-    end: End,
-    iterations: usize,
-    points: PointPair<V>,
-    length: V::Scalar,
-}
-
-impl<V: Vector> Found<V> {
-    /// The answer from a plane and a bound on the distance of the cores' closest points.
-    fn near_contact(
-        self,
-        frame: &Frame<V>,
-        &SupportPlane { n, level, error }: &SupportPlane<V>,
-        upper: V::Scalar,
-    ) -> NearContact<V> {
-        let Self { end, iterations, points, length } = self;
-        let gap = level - frame.radius;
-        let lower = gap - error;
-        let upper = (upper - frame.radius + roundings(2.0, frame.radius)).max(lower);
-        let (normal, overlaps_certainly) = (n, false);
-        NearContact { frame: *frame, points, length, end, iterations, normal, gap, lower, upper, overlaps_certainly }
-    }
+/// The answer from a plane, a bound on the distance of the cores' closest points, and what a search has found.
+fn near_contact_at<V: Vector>(
+    frame: &Frame<V>,
+    (SupportPlane { n: normal, level, error }, upper): (SupportPlane<V>, V::Scalar),
+    (end, iterations): (End, usize),
+    (points, length): (PointPair<V>, V::Scalar),
+) -> NearContact<V> {
+    let gap = level - frame.radius;
+    let lower = gap - error;
+    let upper = (upper - frame.radius + roundings(2.0, frame.radius)).max(lower);
+    let overlaps_certainly = false;
+    NearContact { frame: *frame, points, length, end, iterations, normal, gap, lower, upper, overlaps_certainly }
 }
 
 /// The answer of a search that ended at a simplex that certainly has zero inside: no plane is between the bodies.
@@ -312,7 +297,6 @@ impl<V: Vector> Known<V> {
         if !(plane.meets(upper) && plane.level > self.radius) {
             return None;
         }
-        let found = Found { end: End::Separated, iterations: 1, points, length: v.norm() };
         let mut best = plane;
         if self.is_uneven() && !best.is_beyond(self.radius) {
             // A point is a segment without length.
@@ -323,7 +307,7 @@ impl<V: Vector> Known<V> {
                 best = self.plane(pair, n).filter(|plane| plane.certain() > best.certain()).unwrap_or(best);
             }
         }
-        Some(found.near_contact(frame, &best, upper))
+        Some(near_contact_at(frame, (best, upper), (End::Separated, 1), (points, v.norm())))
     }
 
     /// The result of GJK, as it was begun or from where all queries begin.
@@ -343,15 +327,18 @@ impl<V: Vector> Known<V> {
         if is_around_zero(state.simplex.points(), self.error_of_corners()) {
             return Some(overlapping(&state, frame));
         }
+        let seen = |state: &Gjk<V>, end, found| {
+            near_contact_at(frame, found, (end, state.iterations), (state.simplex.weighted_witness(), state.length))
+        };
         let before = self.best_plane(pair, &state);
         let is_settled =
             |(plane, upper): &(SupportPlane<V>, V::Scalar)| plane.meets(*upper) && plane.level > self.radius;
         if before.as_ref().is_some_and(is_settled) {
-            return before.map(|found| self.found(&state, End::Separated, frame, found));
+            return before.map(|found| seen(&state, End::Separated, found));
         }
         // A simplex of full dimension is never left, nor is zero itself.
         if state.simplex.points().len() > V::DIM || state.length <= Scalar::ZERO {
-            return before.map(|found| self.found(&state, End::Overlap, frame, found));
+            return before.map(|found| seen(&state, End::Overlap, found));
         }
         let begun = state;
         let end = go_on(&mut state, pair, frame, max_iterations);
@@ -370,19 +357,7 @@ impl<V: Vector> Known<V> {
                 state.iterations = iterations;
             }
         }
-        best.map(|found| self.found(&state, end, frame, found))
-    }
-
-    /// The result of a search, with the best plane and a bound on the length of the shortest vector.
-    fn found(
-        &self,
-        state: &Gjk<V>,
-        end: End,
-        frame: &Frame<V>,
-        (plane, upper): (SupportPlane<V>, V::Scalar),
-    ) -> NearContact<V> {
-        let points = state.simplex.weighted_witness();
-        Found { end, iterations: state.iterations, points, length: state.length }.near_contact(frame, &plane, upper)
+        best.map(|found| seen(&state, end, found))
     }
 
     /// The plane that is certainly farthest from zero, of those across the faces that a search has ended at, and across
@@ -390,11 +365,7 @@ impl<V: Vector> Known<V> {
     /// pierces the face that is as far, no other plane is tested.
     fn best_plane(&self, pair: &mut AnyPair<'_, V>, state: &Gjk<V>) -> Option<(SupportPlane<V>, V::Scalar)> {
         let points = state.simplex.points();
-        let mut pairs = [PointPair::default(); MAX_POINTS];
-        for (corner, (_, found)) in pairs.iter_mut().zip(state.simplex.weighted()) {
-            *corner = found;
-        }
-        let faces = across_faces(&pairs[..points.len()], state.axis);
+        let faces = across_faces(state.simplex.witnesses(), state.axis);
         let normal = Some(state.normal).filter(|&n| n != state.axis);
         let (mut best, mut length): (Option<SupportPlane<V>>, Option<V::Scalar>) = (None, None);
         let mut upper = V::Scalar::infinity();
@@ -447,17 +418,13 @@ impl<V: Vector> Known<V> {
     /// A bound on the length of the shortest vector found, `Σ wᵢ·(aᵢ − bᵢ + offset) / Σ wᵢ`: whatever the weights, that
     /// is a vector of the difference. Its coordinates are added up in twice the precision.
     fn length(&self, state: &Gjk<V>) -> V::Scalar {
-        let mut sum = V::Scalar::ZERO;
-        for (weight, _) in state.simplex.weighted() {
-            sum += weight;
-        }
         let x = V::from_fn(|i| {
             let parts = state.simplex.weighted().flat_map(|(weight, PointPair { a, b })| {
                 [a, -b, self.offset, self.lost].map(|part| (weight, part.get(i)))
             });
             dot_minus(parts, V::Scalar::ZERO)
         });
-        let x = x / sum;
+        let x = x / state.simplex.weight();
         // The sum of the weights is right to three roundings, and to one each the sum of the products and the quotient.
         self.length_of(x, roundings_of(5.0, x.abs()) + self.rounded_twice())
     }

@@ -1,9 +1,11 @@
-//! Steps towards a local minimum of the support value among unit vectors, by curvature.
+//! The bottom of a basin of the support value among unit vectors, by steps that curvature tells.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::cores::{Cores, Vertex};
+use super::boundary::Boundary;
+use super::cores::{Cores, Vertex, WayOut};
+use crate::SignedDistanceOptions;
 use crate::symmetric::{Across, Symmetric, axes_across, dot};
 
 /// The largest tangent of an angle to turn by.
@@ -17,7 +19,7 @@ const LEAD: f64 = 0.1;
 
 /// A side of a fold: that of the piece that a step begins on, or the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum FoldSide {
+enum FoldSide {
     Near,
     Far,
 }
@@ -26,7 +28,7 @@ pub(super) enum FoldSide {
 /// and the Hessian `H` of the support value there, for which `H·n = 0`, by its entries along two unit vectors across
 /// `n`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece<V: Vector> {
+struct Piece<V: Vector> {
     n: V,
     point: V,
     across: [V; 2],
@@ -41,14 +43,14 @@ struct SeenAlong<S> {
 }
 
 impl<V: Vector> Piece<V> {
-    pub(super) fn new(cores: &Cores<'_, V>, vertex: &Vertex<V>) -> Self {
+    fn new(cores: &Cores<'_, V>, vertex: &Vertex<V>) -> Self {
         let across = axes_across(vertex.along);
         Self { n: vertex.along, point: vertex.point, across, hessian: cores.hessian(vertex.along, across) }
     }
 
     /// The piece of a support point relative to this one. A point that was not found along any direction, such as one
     /// that coincides with zero, counts as a corner.
-    pub(super) fn beside(&self, cores: &Cores<'_, V>, vertex: &Vertex<V>) -> Self {
+    fn beside(&self, cores: &Cores<'_, V>, vertex: &Vertex<V>) -> Self {
         if vertex.along == V::ZERO {
             return Self { point: vertex.point, hessian: Symmetric::ZERO, ..*self };
         }
@@ -79,7 +81,7 @@ impl<V: Vector> Piece<V> {
     /// How far a support point is from what this piece predicts along its direction, as a part of its distance from
     /// the piece's own point; infinite where it is too far around.
     #[inline(never)]
-    pub(super) fn surprise(&self, vertex: &Vertex<V>) -> V::Scalar {
+    fn surprise(&self, vertex: &Vertex<V>) -> V::Scalar {
         let cosine = vertex.along.dot(self.n);
         if !(cosine > V::Scalar::from_f64(LARGEST)) {
             return V::Scalar::infinity();
@@ -89,12 +91,12 @@ impl<V: Vector> Piece<V> {
     }
 
     /// How much farther along a unit vector a point lies than this piece does.
-    pub(super) fn exceeded_by(&self, point: V, u: V) -> V::Scalar {
+    fn exceeded_by(&self, point: V, u: V) -> V::Scalar {
         u.dot(point) - self.seen(u, self.across).value
     }
 
     /// Whether a support point is of this piece.
-    pub(super) fn foretells(&self, vertex: &Vertex<V>) -> bool {
+    fn foretells(&self, vertex: &Vertex<V>) -> bool {
         self.surprise(vertex) < V::Scalar::from_f64(FORETOLD)
     }
 
@@ -109,7 +111,7 @@ impl<V: Vector> Piece<V> {
     ///
     /// if `H − h` is positive definite. It is so near a minimum on a smooth boundary, whose radii of curvature are the
     /// eigenvalues of `H`: a ball about zero that touches it from within is no larger than these.
-    pub(super) fn step(&self) -> Option<V> {
+    fn step(&self) -> Option<V> {
         let [e, f] = self.across;
         let bend = self.hessian.plus(-self.n.dot(self.point));
         let slope = (e.dot(self.point), f.dot(self.point));
@@ -137,7 +139,7 @@ impl<V: Vector> Piece<V> {
     ///
     /// The prediction for a piece is off by the cube of the angle to where it was found. So the step leads past the
     /// fold by a part of the angle's square, onto the piece that has to be found again.
-    pub(super) fn step_along_fold(&self, other: &Self, seen: FoldSide) -> Option<V> {
+    fn step_along_fold(&self, other: &Self, seen: FoldSide) -> Option<V> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let value = self.n.dot(self.point);
         let [e, f] = self.across;
@@ -177,7 +179,7 @@ impl<V: Vector> Piece<V> {
     /// The unit vector on the way to the edge of a piece that has no bottom of its own, if [`step`](Self::step) and
     /// [`step_along_fold`](Self::step_along_fold) lead nowhere: to the fold with another piece, if there is one that is
     /// lower.
-    pub(super) fn step_to_edge(&self, other: Option<&Self>) -> Option<V> {
+    fn step_to_edge(&self, other: Option<&Self>) -> Option<V> {
         let [e, f] = self.across;
         let slope = (e.dot(self.point), f.dot(self.point));
         let Some(other) = other else { return turned(self.n, self.across, self.step_along_curvature(slope)?) };
@@ -221,4 +223,90 @@ fn turned<V: Vector>(n: V, [e, f]: [V; 2], step: Across<V::Scalar>) -> Option<V>
     }
     let part = (V::Scalar::from_f64(LARGEST) / size).min(Scalar::ONE);
     (n + (e * step.0 + f * step.1) * part).unit()
+}
+
+/// Newton's steps from one direction.
+const MAX_STEPS: usize = 12;
+
+/// The steps in a row that may find nothing lower: if two pieces meet, one is predicted from farther away until it is
+/// found again.
+const PATIENCE: usize = 2;
+
+/// Newton's method from a direction to the bottom of its basin, on one smooth piece of the boundary or along the fold
+/// between two. `others` are vertices near by, one of which may be of the second piece. The bottom, and what was not
+/// predicted on the way there, make the polytope larger as well. A `last` look goes to edges, too, where pieces
+/// without a bottom of their own meet others, which the polytope comes to by itself if it goes on. `None` where a
+/// support point is not finite.
+pub(super) fn descend<V: Vector>(
+    cores: &mut Cores<'_, V>,
+    boundary: &mut Boundary<V>,
+    mut way: WayOut<V>,
+    others: &[u16],
+    options: &SignedDistanceOptions<V>,
+    last: bool,
+) -> Option<WayOut<V>> {
+    let mut first = Piece::new(cores, &way.vertex);
+    let mut second = None;
+    if let Some(other) = contradiction(&first, boundary, others) {
+        second = Some(first.beside(cores, &boundary.vertex(other)));
+    }
+    let (mut failures, mut stale, mut is_added) = (0, FoldSide::Far, true);
+    for _ in 0..MAX_STEPS {
+        let u = match &second {
+            Some(second) => first.step_along_fold(second, stale),
+            None => first.step(),
+        };
+        let u = u.or_else(|| if last { first.step_to_edge(second.as_ref()) } else { None });
+        let Some(u) = u.filter(|_| cores.iterations < options.max_iterations && failures < PATIENCE) else { break };
+        let next = WayOut::new(cores.support(u)?);
+        let piece = Piece::new(cores, &next.vertex);
+        // At equal heights to rounding, the slope shows the bottom: it has twice as many accurate digits as the height.
+        let is_level = (next.h - way.h).abs() <= cores.error_along(u);
+        let is_lower =
+            if is_level { next.rest().length_squared() < way.rest().length_squared() } else { next.h < way.h };
+        let is_foretold = first.foretells(&next.vertex);
+        if !is_foretold {
+            let _ = boundary.insert_anywhere(&next.vertex);
+        }
+        if is_foretold {
+            (first, stale) = (piece, FoldSide::Far);
+        } else if is_lower {
+            (second, stale) = (Some(core::mem::replace(&mut first, piece)), FoldSide::Far);
+        } else {
+            (second, stale) = (Some(piece), FoldSide::Near);
+        }
+        if is_lower {
+            (way, failures, is_added) = (next, 0, !is_foretold);
+        } else {
+            failures += 1;
+        }
+        if is_level && !(last && is_lower && way.rest().norm() > cores.noise()) {
+            break;
+        }
+    }
+    if !is_added {
+        let _ = boundary.insert_anywhere(&way.vertex);
+    }
+    Some(way)
+}
+
+/// The support point that is farthest beyond a piece where that piece alone would lead; where it would lead nowhere,
+/// the one that it predicts worst.
+fn contradiction<V: Vector>(piece: &Piece<V>, boundary: &Boundary<V>, others: &[u16]) -> Option<u16> {
+    let to = piece.step();
+    let excess = |vertex: &Vertex<V>| match to {
+        Some(u) => piece.exceeded_by(vertex.point, u),
+        None => piece.surprise(vertex),
+    };
+    let mut most = (V::Scalar::ZERO, None);
+    for &other in others {
+        let vertex = boundary.vertex(other);
+        if !piece.foretells(&vertex) {
+            let excess = excess(&vertex);
+            if excess > most.0 {
+                most = (excess, Some(other));
+            }
+        }
+    }
+    most.1
 }

@@ -7,6 +7,7 @@ use convex_support::numerics::bound::{raised, raised_vector, roundings, rounding
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::faces::turned_right;
 use super::near_contact::{begin, go_on};
 use crate::body::{AnyPair, Both, Pair, PointPair, Shapes as _};
 use crate::gjk::Frame;
@@ -21,7 +22,6 @@ pub(crate) struct FromContact<V: Vector> {
     pub(crate) along: V::Scalar,
     /// A bound on its length across that direction.
     pub(crate) across: V::Scalar,
-    /// A bound on its length.
     pub(crate) length: V::Scalar,
 }
 
@@ -169,8 +169,7 @@ pub(crate) fn room_around_zero<V: Vector>(
 pub(crate) fn across_corners<V: Vector>(points: &[V; MAX_POINTS]) -> (V, V::Scalar) {
     let edge = points[1] - points[0];
     if V::DIM == 2 {
-        let across = V::from_fn(|i| if i == 0 { edge.get(1) } else { -edge.get(0) });
-        return (across, V::Scalar::EPSILON * V::Scalar::from_f64(2.0) * edge.length());
+        return (turned_right(edge), V::Scalar::EPSILON * V::Scalar::from_f64(2.0) * edge.length());
     }
     let other = points[2] - points[0];
     let lengths = edge.length() * other.length();

@@ -7,7 +7,6 @@ use num_traits::Float;
 use crate::body::PointPair;
 use crate::double::{LEAST, Vec3, array, cross, dot, vector};
 
-/// Edges of two parallelotopes.
 const EDGES: usize = 6;
 
 /// Below this squared sine of the angle between two edges their product is computed in twice the precision.
@@ -86,9 +85,7 @@ pub(super) struct Zonotope {
     size: f64,
 }
 
-/// The facet of a zonotope that is nearest to zero.
 pub(super) struct NearestFacet {
-    /// The outward unit normal.
     pub(super) normal: Vec3,
     /// How far it is from zero, and bounds on how far that and all others are.
     pub(super) depth: f64,
@@ -331,7 +328,6 @@ impl NearestFacet {
         PointPair { a: from + half, b: to - half }
     }
 
-    /// The normal as a vector.
     pub(super) fn unit<V: Vector>(&self) -> V {
         vector(self.normal)
     }
@@ -358,7 +354,6 @@ fn span(e: &Vec3, f: &Vec3, le: f64, lf: f64) -> EdgeSpan {
     EdgeSpan::ZonotopeFacet(m.map(|x| x * per))
 }
 
-/// What an edge spans in the plane.
 fn span_of_one(e: Vec3) -> EdgeSpan {
     let squared = dot(e, e);
     if squared < LEAST {

@@ -4,19 +4,16 @@
 mod affine_hull;
 mod closest;
 #[cfg(feature = "paper")]
-mod johnson;
+mod paper;
 mod regions;
-#[cfg(feature = "paper")]
-mod signed_volumes;
-mod sub_algorithm;
 
 use convex_support::{Scalar, Vector};
 
 use crate::body::PointPair;
 pub(crate) use affine_hull::{AffineHull, project, project_rarely};
+pub use closest::SubAlgorithm;
 pub(crate) use closest::{Closest, nearest_face};
 pub(crate) use regions::{cross, nearest};
-pub use sub_algorithm::SubAlgorithm;
 
 /// The largest number of points of a simplex, in 3D.
 pub(crate) const MAX_POINTS: usize = 4;
@@ -60,7 +57,6 @@ impl<V: Vector> Simplex<V> {
         self.len = index + 1;
     }
 
-    /// Removes the newest point.
     pub(crate) fn pop(&mut self) {
         self.len = self.len.saturating_sub(1);
     }
@@ -74,12 +70,12 @@ impl<V: Vector> Simplex<V> {
     }
 
     /// Keeps only a face, with these weights of its corners.
+    #[inline(never)]
     pub(crate) fn retain(&mut self, face: Face, weights: [V::Scalar; MAX_POINTS]) {
         self.keep(face);
         self.weigh(weights);
     }
 
-    /// Gives the points weights.
     #[inline]
     pub(crate) fn weigh(&mut self, weights: [V::Scalar; MAX_POINTS]) {
         self.weights = weights;
@@ -109,46 +105,36 @@ impl<V: Vector> Simplex<V> {
         (&self.points, (self.len + MAX_POINTS - 1) % MAX_POINTS)
     }
 
-    /// The weighted sum of the points.
     pub(crate) fn weighted_point(&self) -> V {
-        let mut sum = V::ZERO;
-        for (&point, &weight) in self.points().iter().zip(&self.weights) {
-            sum += point * weight;
-        }
-        sum
+        self.points().iter().zip(&self.weights).fold(V::ZERO, |sum, (&point, &weight)| sum + point * weight)
     }
 
-    /// The weighted sum of the witnesses.
+    pub(crate) fn weight(&self) -> V::Scalar {
+        self.weighted().fold(V::Scalar::ZERO, |sum, (weight, _)| sum + weight)
+    }
+
+    #[inline(never)]
     pub(crate) fn weighted_witness(&self) -> PointPair<V> {
         self.weighted().fold(PointPair::default(), |sum, (weight, witness)| sum.plus(witness, weight))
     }
 
-    /// The mean of the points.
     pub(crate) fn middle(&self) -> V {
-        let mut sum = V::ZERO;
-        for &point in self.points() {
-            sum += point;
-        }
-        sum / V::Scalar::from_f64(self.len as f64)
+        self.points().iter().fold(V::ZERO, |sum, &point| sum + point) / V::Scalar::from_f64(self.len as f64)
     }
 
-    /// The directions along which the points are support points.
     pub(crate) fn along(&self) -> &[V] {
         &self.along[..self.len]
     }
 
-    /// The points of the shapes that the points come from.
     pub(crate) fn witnesses(&self) -> &[PointPair<V>] {
         &self.witnesses[..self.len]
     }
 
-    /// The weights and witnesses.
     pub(crate) fn weighted(&self) -> impl Iterator<Item = (V::Scalar, PointPair<V>)> + '_ {
         (0..self.len).map(|i| (self.weights[i], self.witnesses[i]))
     }
 }
 
-/// Some of the points of a simplex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Face(u8);
 
@@ -158,7 +144,6 @@ pub(crate) fn faces(len: usize, most: usize) -> impl Iterator<Item = Face> {
 }
 
 impl Face {
-    /// The face with these corners.
     #[inline]
     pub(crate) fn of_corners(corners: &[usize]) -> Self {
         let mut bits = 0;
@@ -168,7 +153,6 @@ impl Face {
         Self(bits)
     }
 
-    /// The number of corners.
     pub(crate) fn len(self) -> usize {
         self.0.count_ones() as usize
     }

@@ -10,7 +10,6 @@
 //!   the ray, with the whole line for `x`.
 //! - A radius is never made of support points: the simplex is swept by it.
 
-mod newton;
 mod refine;
 mod swept_simplex;
 
@@ -113,12 +112,9 @@ pub(super) fn algorithm_3<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Ray
 /// simplex, or within a simplex of full dimension.
 fn is_inside<V: Vector>(bracket: &Bracket<'_, V>, simplex: &Simplex<V>, x: V) -> bool {
     let wrong = (bracket.error + bracket.noise) * Scalar::from_f64(2.0);
-    let mut seen = [V::ZERO; MAX_POINTS];
-    for (s, p) in seen.iter_mut().zip(simplex.points()) {
-        *s = *p - x;
-    }
+    let (seen, len) = mapped(simplex, |p| p - x);
     let is_in_round = (simplex.weighted_point() - x).norm() + wrong < bracket.radius;
-    is_in_round || is_around_zero(&seen[..simplex.points().len()], wrong)
+    is_in_round || is_around_zero(&seen[..len], wrong)
 }
 
 /// The contact if the line enters the round part of a swept simplex no deeper than errors may have moved it: planes
@@ -174,10 +170,15 @@ fn closest<V: Vector>(
     map: impl Fn(V) -> V,
     dimension: usize,
 ) -> Result<Closest<V>, Stop<V>> {
+    let (seen, len) = mapped(simplex, map);
+    bracket.options.sub_algorithm.closest(&seen[..len], dimension).ok_or(Stop::InDoubt)
+}
+
+/// The points of a simplex, each mapped, and their number.
+fn mapped<V: Vector>(simplex: &Simplex<V>, map: impl Fn(V) -> V) -> ([V; MAX_POINTS], usize) {
     let mut seen = [V::ZERO; MAX_POINTS];
     for (s, p) in seen.iter_mut().zip(simplex.points()) {
         *s = map(*p);
     }
-    let points = &seen[..simplex.points().len()];
-    bracket.options.sub_algorithm.closest(points, dimension).ok_or(Stop::InDoubt)
+    (seen, simplex.points().len())
 }

@@ -9,11 +9,9 @@ use crate::simplex::{AffineHull, Face, MAX_POINTS, faces, project_rarely};
 /// The first point of a line in a simplex swept by a ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry<V: Vector> {
-    /// Where on the line.
     pub(super) mu: V::Scalar,
     /// The unit outward normal of the swept simplex there.
     pub(super) n: V,
-    /// The face below it.
     pub(super) face: Face,
     /// The barycentric coordinates of the core's point below it, one for each corner of the face.
     pub(super) weights: [V::Scalar; MAX_POINTS],

@@ -80,7 +80,7 @@ impl<V: Vector> BestPlane<V> {
     }
 
     /// Closes the bracket between this plane and the weighted sum of the corners, which is on the line at `high`.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn close(
         &self,
         bracket: &mut Bracket<'_, V>,

@@ -4,7 +4,6 @@
 //! Signs, and planes in the coordinates of the [frame](super::ray_frame), only decide where to look next. If the
 //! [bracket](super::bracket) leaves the result in doubt, Algorithm 3 takes over.
 
-mod best_plane;
 mod closing;
 mod pieces;
 mod rounded;

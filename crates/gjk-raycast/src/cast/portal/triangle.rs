@@ -117,15 +117,25 @@ impl<V: Vector> Planes<'_, V> {
         plane: RayPlane<V::Scalar>,
         toward: (V::Scalar, V::Scalar),
     ) -> Result<RayPoint<V>, Stop<V>> {
-        let is_beyond = |p: &RayPoint<V>| dot(toward, p.across()) > V::Scalar::ZERO;
-        let mut p = self.support(bracket, plane)?;
-        while !is_beyond(&p) && self.tilt < Scalar::ONE {
+        let p = self.support(bracket, plane)?;
+        if is_beyond(toward, &p) { Ok(p) } else { self.support_farther(bracket, toward) }
+    }
+
+    /// [`support_toward`](Self::support_toward) of planes that are tilted more than the last one.
+    #[cold]
+    #[inline(never)]
+    fn support_farther(
+        &mut self,
+        bracket: &mut Bracket<'_, V>,
+        toward: (V::Scalar, V::Scalar),
+    ) -> Result<RayPoint<V>, Stop<V>> {
+        while self.tilt < Scalar::ONE {
             let number = V::Scalar::from_f64;
             self.tilt = (self.tilt * number(8.0)).max(number(OF_FACE));
-            p = self.support(bracket, self.alpha.tilted(toward, self.tilt).plane())?;
-        }
-        if is_beyond(&p) {
-            return Ok(p);
+            let p = self.support(bracket, self.alpha.tilted(toward, self.tilt).plane())?;
+            if is_beyond(toward, &p) {
+                return Ok(p);
+            }
         }
         self.tilt = self.tilt.max(Scalar::ONE);
         support_across(bracket, self.frame, toward)
@@ -220,6 +230,12 @@ impl<V: Vector> Planes<'_, V> {
             return Ok(found);
         }
     }
+}
+
+/// Whether a point is on that side of the line.
+#[inline(always)]
+fn is_beyond<V: Vector>(toward: (V::Scalar, V::Scalar), p: &RayPoint<V>) -> bool {
+    dot(toward, p.across()) > Scalar::ZERO
 }
 
 impl<V: Vector> Triangle<V> {
