@@ -109,7 +109,8 @@ impl Library {
         if query == "ray_cast" {
             let (shape, place) = posed(object.get("target")?)?;
             let back = place.inverse();
-            let (source, direction) = (back.transform_point3(vector("source")?), back.transform_vector3(vector("direction")?));
+            let (source, direction) =
+                (back.transform_point3(vector("source")?), back.transform_vector3(vector("direction")?));
             let end = end(object, "max_lambda", (source.length() + size(&shape)) / direction.length());
             let ray = Ray {
                 origin: source.into(),
@@ -128,6 +129,10 @@ impl Library {
         match query {
             "linear_cast" => {
                 let velocity = back.transform_vector3(vector("velocity_b")? - vector("velocity_a")?);
+                // These functions cast along a direction, which bodies at rest do not have.
+                if velocity == DVec3::ZERO {
+                    return None;
+                }
                 let way = translation.length() + size(&pair.a) + size(&pair.b);
                 let end = end(object, "max_time", way / velocity.length());
                 let cast = Cast { pose, velocity: (velocity * end).into(), lambda: None, cosine_or_gap: 0.0 };
@@ -171,9 +176,7 @@ fn posed(value: &Value) -> Option<(Shape, DAffine3)> {
         "polytope" => {
             Shape::Hull { points: value.get("points")?.as_array()?.iter().map(numbers).collect::<Option<_>>()? }
         }
-        "rounded" => {
-            Shape::RoundBox { half_extents: half_extents(value.get("of")?)?, radius: number("radius")? }
-        }
+        "rounded" => Shape::RoundBox { half_extents: half_extents(value.get("of")?)?, radius: number("radius")? },
         _ => return None,
     };
     Some((shape, DAffine3::IDENTITY))
