@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""What today's versions of coal, FCL, MuJoCo and parry answer to the poses of the museum.
+"""What today's versions of coal, FCL, MuJoCo, parry, Box3D and Jolt answer to the poses of the museum.
 
     pip install -r benches/peers/requirements.txt
-    cargo build --release -p studies --features peers
+    cargo build --release -p studies --features peers,box3d,jolt     # C and C++ compilers, and cmake before 4
     benches/peers/museum_today.py       # then: python3 xtask/data/museum.py, and cargo xtask museum --write
 
-An answer is right if it is off by no more than the tolerance
-that the library documents and a millionth of its value. Writes `xtask/data/museum_today.json`.
+An answer is right if it is off by no more than the tolerance that the library documents and a millionth of its value.
+Box3D and Jolt compute in `f32`, in metres: they are not asked where the rounding of the pose's numbers, or the answer
+itself, is of the size of their tolerance. Writes `xtask/data/museum_today.json`.
 """
 
 import json
@@ -18,9 +19,9 @@ import tempfile
 HERE = os.path.dirname(os.path.abspath(__file__))
 DATA = os.path.join(HERE, "..", "..", "xtask", "data")
 PEERS = {peer: [sys.executable, os.path.join(HERE, f"{peer}_answers.py")] for peer in ("coal", "fcl", "mujoco")}
-STUDIES = ["cargo", "run", "--release", "--quiet", "-p", "studies", "--features", "peers", "--", "judge", "--parry"]
-# In the precision that a pose asks for.
-PEERS |= {f"parry {precision}": [*STUDIES, precision] for precision in ("f64", "f32")}
+STUDIES = ["cargo", "run", "--release", "--quiet", "-p", "studies", "--features", "peers,box3d,jolt", "--", "judge", "--ask"]
+PEERS |= {library: [*STUDIES, library] for library in ("parry f64", "parry f32", "Box3D f32", "Jolt f32")}
+IN_METRES = ("Box3D f32", "Jolt f32")
 SCALARS = {"ray_cast": "lambda", "linear_cast": "time", "motion_cast": "time", "distance": "distance", "signed_distance": "signed_distance"}
 
 
@@ -66,16 +67,30 @@ def is_left_out(peer, case, answer):
     return "not yet supported" in said or "must be positive" in said or (peer == "fcl" and '"triangle"' in json.dumps(case))
 
 
+def numbers(value):
+    """All numbers in a query."""
+    if isinstance(value, dict):
+        value = [part for name, part in value.items() if name not in ("allow", "expect", "rotation", "direction")]
+    return [abs(value)] if isinstance(value, (int, float)) else [x for part in value for x in numbers(part)] if isinstance(value, list) else []
+
+
+def is_too_fine(case, tolerance):
+    """Whether single precision, or a tolerance of this length, cannot tell the answer from a wrong one."""
+    truth = case["expect"].get(SCALARS.get(case["query"]))
+    return max(numbers(case)) * 2**-24 > tolerance or truth is not None and 0 < abs(truth) < tolerance
+
+
 def main():
     with open(os.path.join(DATA, "museum.jsonl"), encoding="utf-8") as file:
         lines = [line for line in file if not line.startswith("#")]
     right, wrong, today = {}, {}, {}
     for peer in PEERS:
-        precision = peer.partition(" ")[2]
+        # parry answers in the precision that a pose asks for.
+        precision = peer.partition(" ")[2] if peer.startswith("parry") else ""
         head, answers = asked(peer, [line for line in lines if precision in ("", json.loads(line).get("precision", "f64"))])
         for case in map(json.loads, lines):
             answer = answers.get(case["id"])
-            if answer and not is_left_out(peer, case, answer):
+            if answer and not is_left_out(peer, case, answer) and not (peer in IN_METRES and is_too_fine(case, head["tolerance"])):
                 why = judged(case, answer, head["tolerance"])
                 (wrong if why else right).setdefault(case["id"], []).append(head["peer"].split(" ")[0] + (f": {why}" if why else ""))
     for id in (json.loads(line)["id"] for line in lines):

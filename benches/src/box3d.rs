@@ -128,7 +128,7 @@ enum Body {
 fn body(shape: &Shape) -> Option<Body> {
     // Points in general position have triangles for facets, and Euler's formula 3·n − 6 edges.
     let hull = |points: &[Vec3], edges| {
-        (edges <= MAX_HULL_EDGES).then(|| Hull::from_points(points, points.len() as i32).expect(VALID))
+        (edges <= MAX_HULL_EDGES).then(|| Hull::from_points(points, points.len() as i32).ok()).flatten()
     };
     Some(match shape {
         Shape::Ball { radius } => Body::Sphere(Sphere::new(Vec3::ZERO, *radius as f32)),
@@ -139,7 +139,7 @@ fn body(shape: &Shape) -> Option<Body> {
         Shape::Cuboid { half_extents } => Body::Hull(hull(&corners(*half_extents), 12)?),
         Shape::Hull { points } => {
             let points: Vec<Vec3> = points.iter().map(|&point| vector(point)).collect();
-            Body::Hull(hull(&points, 3 * points.len() - 6)?)
+            Body::Hull(hull(&points, (3 * points.len()).saturating_sub(6))?)
         }
         Shape::Cylinder { .. } | Shape::Cone { .. } | Shape::Ellipsoid { .. } | Shape::RoundBox { .. } => return None,
     })
@@ -157,7 +157,7 @@ fn proxy(shape: &Shape) -> Option<ShapeProxy> {
         }
         Shape::Hull { .. } | Shape::Cylinder { .. } | Shape::Cone { .. } | Shape::Ellipsoid { .. } => return None,
     };
-    Some(ShapeProxy::new(points, radius as f32).expect(VALID))
+    ShapeProxy::new(points, radius as f32).ok()
 }
 
 fn segment(half_height: f64) -> [Vec3; 2] {

@@ -33,6 +33,12 @@ pub struct Pair {
 }
 
 impl Pair {
+    /// Two bodies of no name, and of no seeds of their own.
+    #[must_use]
+    pub const fn new(a: Shape, b: Shape) -> Self {
+        Self { index: 0, a, b }
+    }
+
     /// The pair of that name.
     ///
     /// # Panics

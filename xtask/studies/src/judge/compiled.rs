@@ -5,17 +5,19 @@
 use std::time::Duration;
 
 use benches::measure::Solver;
+use convex_support::glam::{DAffine3, DQuat, DVec3};
 use serde_json::Value;
 use workloads::Pose;
-use workloads::pairs::{PAIR_NAMES, Pair};
-use workloads::shapes::{SHAPE_NAMES, Shape};
+use workloads::pairs::Pair;
+use workloads::shapes::Shape;
 use workloads::w1_ray_cast::{Ambiguity, Ray};
 use workloads::w2_linear_cast::Cast;
 use workloads::w3_distance::DistanceQuery;
 use workloads::w3b_intersect::IntersectQuery;
-use xtask::judge::questions::{Question, SETS};
+use xtask::judge::questions::Question;
 use xtask::judge::verdict::Claim;
 use xtask::judge::witnesses::{MICROSECONDS, Reply, Witness, rounding};
+use xtask::wire::fields::Object;
 
 /// A library, by what it makes of some rays against a shape, or of some poses of a pair; `None` where it has no such
 /// shape.
@@ -82,7 +84,7 @@ impl Library {
     }
 
     fn reply(&self, question: &Question) -> Option<Reply> {
-        let solver = self.solver(question)?;
+        let (solver, end) = self.solver(question)?;
         let answer = *solver.answers().first()?;
         if answer.is_nan() {
             return Some(Reply::NoAnswer);
@@ -90,49 +92,108 @@ impl Library {
         let claim = match question.object.get("query")?.as_str()? {
             "distance" => Claim { flag: None, scalar: Some(answer) },
             "intersect" => Claim { flag: Some(answer > 0.0), scalar: None },
-            _ => Claim { flag: Some(answer.is_finite()), scalar: answer.is_finite().then_some(answer) },
+            _ => Claim { flag: Some(answer.is_finite()), scalar: answer.is_finite().then_some(answer * end) },
         };
         let ns = solver.nanoseconds(0..COPIES, Duration::from_micros(3 * MICROSECONDS));
         Some(Reply::Answer { claim, ns })
     }
 
-    /// The question, as often as it takes to be timed.
-    fn solver(&self, question: &Question) -> Option<Solver> {
-        let Question { set, case, object, .. } = question;
-        if !SETS.contains(set) {
+    /// The question, as often as it takes to be timed; and the end of its ray or motion, which is one to these functions.
+    fn solver(&self, question: &Question) -> Option<(Solver, f64)> {
+        let Question { set, object, .. } = question;
+        if set.starts_with("suite") {
             return None;
         }
-        let field = |name: &str| object.get(name);
-        match field("query")?.as_str()? {
-            "ray_cast" if SHAPE_NAMES.contains(&case.as_str()) => {
-                let (origin, direction) = (numbers(field("source")?)?, numbers(field("direction")?)?);
-                let ray = Ray { origin, direction, lambda: None, ambiguity: Ambiguity::None };
-                (self.ray_casts)(&Shape::named(case), &[ray; COPIES])
-            }
-            query if PAIR_NAMES.contains(&case.as_str()) => {
-                // The first of a pair rests at the origin.
-                let b = field("b")?;
-                let pose =
-                    Pose { rotation: numbers(b.get("rotation")?)?, translation: numbers(b.get("translation")?)? };
-                let (pair, nowhere) = (Pair::named(case), [0.0; 3]);
-                match query {
-                    "linear_cast" => {
-                        let velocity = numbers(field("velocity_b")?)?;
-                        let cast = Cast { pose, velocity, lambda: None, cosine_or_gap: 0.0 };
-                        (self.linear_casts)(&pair, &[cast; COPIES])
-                    }
-                    "distance" => {
-                        (self.distances)(&pair, &[DistanceQuery { pose, normal: nowhere, distance: 0.0 }; COPIES])
-                    }
-                    "intersect" => {
-                        let query = IntersectQuery { pose, normal: nowhere, meet: false, moved: 0.0 };
-                        (self.intersections)(&pair, &[query; COPIES])
-                    }
-                    _ => None,
+        let vector = |name: &str| object.get(name).map_or(Some(DVec3::ZERO), |v| numbers(v).map(DVec3::from_array));
+        let query = object.get("query")?.as_str()?;
+        if query == "ray_cast" {
+            let (shape, place) = posed(object.get("target")?)?;
+            let back = place.inverse();
+            let (source, direction) =
+                (back.transform_point3(vector("source")?), back.transform_vector3(vector("direction")?));
+            let end = end(object, "max_lambda", (source.length() + size(&shape)) / direction.length());
+            let ray = Ray {
+                origin: source.into(),
+                direction: (direction * end).into(),
+                lambda: None,
+                ambiguity: Ambiguity::None,
+            };
+            return Some(((self.ray_casts)(&shape, &[ray; COPIES])?, end));
+        }
+        // The first of a pair rests at the origin.
+        let ((a, at_a), (b, at_b)) = (posed(object.get("a")?)?, posed(object.get("b")?)?);
+        let back = at_a.inverse();
+        let (_, rotation, translation) = (back * at_b).to_scale_rotation_translation();
+        let pose = Pose { rotation: rotation.to_array(), translation: translation.into() };
+        let (pair, nowhere) = (Pair::new(a, b), [0.0; 3]);
+        match query {
+            "linear_cast" => {
+                let velocity = back.transform_vector3(vector("velocity_b")? - vector("velocity_a")?);
+                // These functions cast along a direction, which bodies at rest do not have.
+                if velocity == DVec3::ZERO {
+                    return None;
                 }
+                let way = translation.length() + size(&pair.a) + size(&pair.b);
+                let end = end(object, "max_time", way / velocity.length());
+                let cast = Cast { pose, velocity: (velocity * end).into(), lambda: None, cosine_or_gap: 0.0 };
+                Some(((self.linear_casts)(&pair, &[cast; COPIES])?, end))
+            }
+            "distance" => {
+                let query = DistanceQuery { pose, normal: nowhere, distance: 0.0 };
+                Some(((self.distances)(&pair, &[query; COPIES])?, 1.0))
+            }
+            "intersect" => {
+                let query = IntersectQuery { pose, normal: nowhere, meet: false, moved: 0.0 };
+                Some(((self.intersections)(&pair, &[query; COPIES])?, 1.0))
             }
             _ => None,
         }
+    }
+}
+
+/// The end that a question gives; if it gives none, twice that which passes the body for certain.
+fn end(object: &Object, name: &str, passed: f64) -> f64 {
+    object.get(name).and_then(Value::as_f64).unwrap_or(2.0 * passed)
+}
+
+/// A shape of the workloads and its place; `None` for others.
+fn posed(value: &Value) -> Option<(Shape, DAffine3)> {
+    let number = |name: &str| value.get(name)?.as_f64();
+    let half_extents = |of: &Value| numbers(of.get("half_extents")?);
+    let shape = match value.get("type")?.as_str()? {
+        "posed" => {
+            let (shape, within) = posed(value.get("of")?)?;
+            let rotation = value.get("rotation").map_or(Some([0.0, 0.0, 0.0, 1.0]), numbers)?;
+            let translation = value.get("translation").map_or(Some([0.0; 3]), numbers)?;
+            let rotation = DQuat::from_array(rotation).normalize();
+            return Some((shape, DAffine3::from_rotation_translation(rotation, translation.into()) * within));
+        }
+        "ball" => Shape::Ball { radius: number("radius")? },
+        "cuboid" => Shape::Cuboid { half_extents: half_extents(value)? },
+        "cylinder" => Shape::Cylinder { half_height: number("half_height")?, radius: number("radius")? },
+        "cone" => Shape::Cone { half_height: number("half_height")?, radius: number("radius")? },
+        "capsule" => Shape::Capsule { half_height: number("half_height")?, radius: number("radius")? },
+        "polytope" => {
+            Shape::Hull { points: value.get("points")?.as_array()?.iter().map(numbers).collect::<Option<_>>()? }
+        }
+        "rounded" => Shape::RoundBox { half_extents: half_extents(value.get("of")?)?, radius: number("radius")? },
+        _ => return None,
+    };
+    Some((shape, DAffine3::IDENTITY))
+}
+
+/// No point of a shape is farther from its origin.
+fn size(shape: &Shape) -> f64 {
+    let length = |point: &[f64; 3]| DVec3::from(*point).length();
+    match shape {
+        Shape::Ball { radius } => *radius,
+        Shape::Cuboid { half_extents } => length(half_extents),
+        Shape::Cylinder { half_height, radius }
+        | Shape::Cone { half_height, radius }
+        | Shape::Capsule { half_height, radius } => half_height + radius,
+        Shape::Ellipsoid { semi_axes } => length(semi_axes),
+        Shape::Hull { points } => points.iter().map(length).fold(0.0, f64::max),
+        Shape::RoundBox { half_extents, radius } => length(half_extents) + radius,
     }
 }
 

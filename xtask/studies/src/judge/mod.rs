@@ -27,11 +27,10 @@ pub(crate) struct Scope {
     /// Write the questions as a query file, and end.
     #[arg(long, value_name = "FILE")]
     questions: Option<PathBuf>,
-    /// Write parry's answers to a file of questions, in this precision, and end: `benches/peers/museum_today.py` reads
+    /// Write the answers of one built-in library to a file of questions, and end: `benches/peers/museum_today.py` reads
     /// them.
-    #[cfg(feature = "peers")]
-    #[arg(long, value_names = ["PRECISION", "QUESTIONS", "ANSWERS"], num_args = 3)]
-    parry: Option<Vec<String>>,
+    #[arg(long, value_names = ["LIBRARY", "QUESTIONS", "ANSWERS"], num_args = 3)]
+    ask: Option<Vec<String>>,
     /// How many questions of each kind are asked of each shape or pair of shapes of the workloads.
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u16).range(2..=2000))]
     each: u16,
@@ -42,6 +41,21 @@ pub(crate) struct Scope {
     #[arg(long)]
     record: bool,
 }
+
+/// All answers of a library, which says how many it has given.
+type Ask = fn(&[Question], &mut dyn FnMut(usize)) -> Witness;
+
+/// The libraries that are built in, in the order of the table.
+const LIBRARIES: &[(&str, Ask)] = &[
+    #[cfg(feature = "peers")]
+    ("parry f64", |questions, progress| parry::double::witness(questions, progress)),
+    #[cfg(feature = "peers")]
+    ("parry f32", |questions, progress| parry::single::witness(questions, progress)),
+    #[cfg(feature = "box3d")]
+    ("Box3D f32", |questions, progress| compiled::box3d(questions, progress)),
+    #[cfg(feature = "jolt")]
+    ("Jolt f32", |questions, progress| compiled::jolt(questions, progress)),
+];
 
 /// Judges everybody.
 pub(crate) fn run(scope: &Scope) -> ExitCode {
@@ -61,11 +75,10 @@ fn judge(scope: &Scope) -> Result<bool, String> {
     if let Some(file) = &scope.questions {
         return write_questions(file, &questions).map(|()| true);
     }
-    #[cfg(feature = "peers")]
-    if let Some([precision, file, answers]) = scope.parry.as_deref() {
+    if let Some([library, file, answers]) = scope.ask.as_deref() {
         let questions = questions::of_file(Path::new(file))?;
-        let witness = if precision == "f32" { parry::single::witness } else { parry::double::witness };
-        return witness(&questions, |_| ()).write(&questions, Path::new(answers)).map(|()| true);
+        let (_, ask) = LIBRARIES.iter().find(|(name, _)| name == library).ok_or("no such library is built in")?;
+        return ask(&questions, &mut |_| ()).write(&questions, Path::new(answers)).map(|()| true);
     }
     begin_progress(1, "judge");
     let witnesses = witnesses(scope, &questions)?;
@@ -102,15 +115,7 @@ fn witnesses(scope: &Scope, questions: &[Question]) -> Result<Vec<Witness>, Stri
         witnesses::ours(questions, "f64", |k| progress("ours f64", k)),
         witnesses::ours(questions, "f32", |k| progress("ours f32", k)),
     ];
-    #[cfg(feature = "peers")]
-    {
-        witnesses.push(parry::double::witness(questions, |k| progress("parry f64", k)));
-        witnesses.push(parry::single::witness(questions, |k| progress("parry f32", k)));
-    }
-    #[cfg(feature = "box3d")]
-    witnesses.push(compiled::box3d(questions, |k| progress("Box3D", k)));
-    #[cfg(feature = "jolt")]
-    witnesses.push(compiled::jolt(questions, |k| progress("Jolt", k)));
+    witnesses.extend(LIBRARIES.iter().map(|(name, ask)| ask(questions, &mut |k| progress(name, k))));
     for file in &scope.answers {
         witnesses.push(witnesses::from_file(file, questions)?);
     }
