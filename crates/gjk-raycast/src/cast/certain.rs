@@ -1,6 +1,7 @@
 //! The cast by the certain crossing of a shape: of a ray against it, and of a point or a ball that moves against it.
 
 use convex_support::numerics::bound::roundings;
+use convex_support::numerics::range::comfortable_unit_of_length;
 use convex_support::{CertainCrossing, LineQuery, Scalar, Vector};
 use num_traits::Float as _;
 
@@ -32,7 +33,11 @@ pub(crate) fn certain<V: Vector>(
         CertainCrossing::Misses(axis) => {
             // Its part along the ray would count far from here.
             let along = axis.dot(ray.direction) / ray.direction.length_squared();
-            missed((axis - ray.direction * along).unit().unwrap_or(axis))
+            let across = axis - ray.direction * along;
+            // Not `unit`, whose rare case is a call: without it nothing of this is left where nobody asks for the axis.
+            let across = across / comfortable_unit_of_length(across.abs().max_element());
+            let length = across.length();
+            missed(if length > zero { across / length } else { axis })
         }
         CertainCrossing::Enters { entry, bounds, normal } => {
             let [earliest, latest] = bounds;
