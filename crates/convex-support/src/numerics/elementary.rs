@@ -6,6 +6,7 @@
 //! of less than one unit in the last place for each of those used here. In single precision they are computed in double
 //! and rounded once. `clippy.toml` forbids the libraries to call those of the standard library and of num-traits.
 
+use super::range::is_comfortable;
 use crate::Scalar;
 
 /// Sine and cosine.
@@ -27,10 +28,13 @@ pub fn atan2<S: Scalar>(y: S, x: S) -> S {
     S::from_f64(libm::atan2(y.as_f64(), x.as_f64()))
 }
 
-/// `√(x² + y²)`, whose squares neither over- nor underflow.
+/// `√(x² + y²)`, to two units in the last place. The library's is asked only if a square would over- or underflow: it
+/// takes several times as long.
 #[inline]
 pub fn hypot<S: Scalar>(x: S, y: S) -> S {
-    S::from_f64(libm::hypot(x.as_f64(), y.as_f64()))
+    let (x, y) = (x.as_f64(), y.as_f64());
+    let squared = x * x + y * y;
+    S::from_f64(if is_comfortable(squared) { num_traits::Float::sqrt(squared) } else { libm::hypot(x, y) })
 }
 
 /// The natural logarithm.

@@ -132,7 +132,6 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
             let _ = cores.peel();
         }
     }
-    let mut state = cores.first_state(options.axis);
     let closest = cores.closest_points();
     let tells_all = |cores: &mut Cores<'_, V>, state: Option<&Gjk<V>>| {
         extra.is_some_and(|extra| (extra.look_near)(cores, wanted, state))
@@ -145,6 +144,7 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     {
         return Separation::of_near_contact(cores, near);
     }
+    let mut state = cores.first_state(options.axis);
     let end = cores.approach(wanted, &mut state, closest, observer);
     if closest.is_none() && cores.are_near(&mut state) {
         is_near = true;
