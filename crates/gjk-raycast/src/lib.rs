@@ -36,6 +36,7 @@
 //!
 //! About a robot:
 //! - *Is its path free, at every time, and what does it meet first?* [`Linkage::path`].
+//! - *The same along a spline?* [`Linkage::path_along`], with a [`JointTrajectory`] that you implement.
 //! - *Do two of its links ever meet, at any positions of the joints?* [`Linkage::joint_box`].
 //!
 //! About a ray and a shape:
