@@ -38,8 +38,8 @@ pub struct Margin<V: Vector> {
     pub(crate) ball_point: V,
 }
 
-/// The free margin of `e1` about `e2` (Rimon and Boyd, Section 3): how far `e1` is from `e2`, measured in the norm in
-/// which `e1` is the unit ball.
+/// The free margin of `e1` about `e2` (Rimon and Boyd, Section 3): the square of the factor by which `e1` has to grow
+/// about its centre to touch `e2`, minus one.
 ///
 /// m = min { (x − x₁)ᵀP(x − x₁) : x ∈ E₂ } − 1. It is not symmetric, but its sign is: positive means disjoint, 0
 /// touching, negative overlapping. As a function of the bodies it is continuously differentiable everywhere (see
