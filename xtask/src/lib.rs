@@ -33,7 +33,12 @@ struct Readme;
 #[doc = include_str!("../../docs/porting.md")]
 struct Porting;
 
-/// Compiles and runs the columns of the note on choosing a method.
+/// Compiles and runs the examples of the note on choosing a method.
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/choosing-a-method.md")]
 struct ChoosingAMethod;
+
+/// Compiles and runs the example of the note on derivatives.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/derivatives.md")]
+struct Derivatives;

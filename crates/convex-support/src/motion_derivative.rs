@@ -128,7 +128,7 @@ impl<V: Vector> MotionHessian<V> {
         self.between((translation, rotation), (translation, rotation))
     }
 
-    /// `θᵀHφ` for two motions `θ` and `φ`, each a translation and a rotation.
+    /// The second derivative along two motions `θ` and `φ`, each a translation and a rotation: `θᵀHφ`.
     #[must_use]
     pub fn between(&self, rows: (V, V::AngularVelocity), columns: (V, V::AngularVelocity)) -> V::Scalar {
         let coordinate = |(translation, rotation): (V, V::AngularVelocity), i: usize| {

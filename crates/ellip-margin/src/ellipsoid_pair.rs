@@ -140,13 +140,13 @@ impl<'a, V: Vector> EllipsoidPair<'a, V> {
         self.answer(scaling(self.first, self.second, self.options))
     }
 
-    /// E₁.
+    /// The first ellipsoid, E₁.
     #[must_use]
     pub const fn first(&self) -> &'a Ellipsoid<V> {
         self.first
     }
 
-    /// E₂.
+    /// The second ellipsoid, E₂.
     #[must_use]
     pub const fn second(&self) -> &'a Ellipsoid<V> {
         self.second
@@ -169,13 +169,13 @@ pub struct Answer<'a, V: Vector, A> {
 }
 
 impl<'a, V: Vector, A> Answer<'a, V, A> {
-    /// E₁.
+    /// The first ellipsoid, E₁.
     #[must_use]
     pub const fn first(&self) -> &'a Ellipsoid<V> {
         self.first
     }
 
-    /// E₂.
+    /// The second ellipsoid, E₂.
     #[must_use]
     pub const fn second(&self) -> &'a Ellipsoid<V> {
         self.second

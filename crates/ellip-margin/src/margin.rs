@@ -1,8 +1,7 @@
 //! The free margin of two ellipsoids.
 
+use convex_support::numerics::elementary::sqrt;
 use convex_support::{Ellipsoid, Scalar, Vector};
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 use crate::numerics::{add, dot, store, sub};
 use crate::pair::Pair;
@@ -39,8 +38,8 @@ pub struct Margin<V: Vector> {
     pub(crate) ball_point: V,
 }
 
-/// The free margin of `e1` about `e2` (Rimon and Boyd, Section 3): how far `e1` is from `e2`, measured in the norm in
-/// which `e1` is the unit ball.
+/// The free margin of `e1` about `e2` (Rimon and Boyd, Section 3): the square of the factor by which `e1` has to grow
+/// about its centre to touch `e2`, minus one.
 ///
 /// m = min { (x − x₁)ᵀP(x − x₁) : x ∈ E₂ } − 1. It is not symmetric, but its sign is: positive means disjoint, 0
 /// touching, negative overlapping. As a function of the bodies it is continuously differentiable everywhere (see
@@ -147,7 +146,7 @@ impl<V: Vector> Margin<V> {
     /// The factor √(1 + m) about x₁ that makes E₁ touch E₂.
     #[must_use]
     pub fn scale(&self) -> V::Scalar {
-        num_traits::Float::sqrt(V::Scalar::ONE + self.margin)
+        sqrt(V::Scalar::ONE + self.margin)
     }
 
     /// A lower bound of the margin after E₁ has moved, without another query: `from` is where it was when this margin
@@ -203,8 +202,8 @@ pub(crate) fn scale_after<V: Vector>(scale: f64, from: &Ellipsoid<V>, to: &Ellip
         }
         // A generous bound on the rounding of axes and products.
         let [least, most] = [f64::min, f64::max].map(|extreme| a.into_iter().reduce(extreme).unwrap_or(0.0));
-        let turn = turn.sqrt() + 64.0 * V::Scalar::EPSILON.as_f64() * (most / least);
-        (1.0 - turn) * scale - shift.sqrt() * (1.0 + 1e-12)
+        let turn = sqrt(turn) + 64.0 * V::Scalar::EPSILON.as_f64() * (most / least);
+        (1.0 - turn) * scale - sqrt(shift) * (1.0 + 1e-12)
     }
     in_dimension!(once::<V>(scale, from, to))
 }

@@ -10,10 +10,8 @@
 //! The left side changes sign once, between the least and the greatest σᵢ; ln(‖ŵ‖/‖x̂‖) grows with ln ν, at a rate
 //! between 0 and 2, and Newton's method on it, kept within the bracket, ends in a few steps.
 
-use convex_support::numerics::elementary::{exp, ln};
+use convex_support::numerics::elementary::{exp, ln, sqrt};
 use convex_support::{Ellipsoid, Scalar, Vector};
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 use crate::numerics::{Svd, Vec, add, combine, dot, power_of_two_near, size, store, svd, unit};
 use crate::pair::Pair;
@@ -93,7 +91,7 @@ fn scaling_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, o
     let (Svd { sigma, u, v }, ball) = (basis, basis.coordinates(c, g));
     let Root { nu, x, status, iterations } = root(sigma, ball, options);
     // α² = t(1 − t)rᵀ[…]⁻¹r = ν/(1 + ν)·Σ ĉᵢx̂ᵢ, stationary in ν.
-    let scale = (nu / (1.0 + nu) * dot(ball, x)).sqrt() * unit_of_r;
+    let scale = sqrt(nu / (1.0 + nu) * dot(ball, x)) * unit_of_r;
     let y = combine(v, x.map(|x| x * unit_of_r));
     // x* − x₁ = R₁·diag(a₁)Uŵ with the sign that Pw = −νQv has.
     let (e1, e2) = (unit(combine(u, core::array::from_fn(|i| -x[i] / sigma[i]))), unit(y.map(|y| -y)));
@@ -121,7 +119,7 @@ struct Root<const N: usize> {
 fn root<const N: usize>(sigma: Vec<N>, ball: Vec<N>, options: MarginOptions) -> Root<N> {
     let (mut low, mut high) = sigma.iter().fold((sigma[0], sigma[0]), |(low, high), s| (low.min(*s), high.max(*s)));
     // Exact for round bodies.
-    let mut nu = (low.sqrt() * high.sqrt()).max(low).min(high);
+    let mut nu = (sqrt(low) * sqrt(high)).max(low).min(high);
     let (mut status, mut iterations) = (Status::IterationLimit, 0);
     loop {
         let mut x = [0.0; N];
@@ -150,7 +148,7 @@ fn root<const N: usize>(sigma: Vec<N>, ball: Vec<N>, options: MarginOptions) -> 
             high = nu;
         }
         let newton = nu * exp(-difference / (slope_w / ww + slope_x / xx));
-        let next = if newton >= low && newton <= high { newton } else { low.sqrt() * high.sqrt() };
+        let next = if newton >= low && newton <= high { newton } else { sqrt(low) * sqrt(high) };
         let next = if next.is_finite() { next } else { nu };
         let change = ((next - nu) / next).abs();
         nu = next;

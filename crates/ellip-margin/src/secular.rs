@@ -9,9 +9,7 @@
 //! method for 1/φ(τ) = 1 (Hebden 1973; Moré and Sorensen 1983) rises to the root from any τ below it, and comes back
 //! below in one step from above.
 
-use convex_support::numerics::elementary::hypot;
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
+use convex_support::numerics::elementary::{hypot, sqrt};
 
 use crate::numerics::{Svd, Vec, combine, dot, size, sub, svd};
 use crate::pair::Pair;
@@ -69,8 +67,8 @@ pub(crate) fn solve<const N: usize>(
     let mut low = (0..N).fold(0.0f64, |m, i| m.max((ball[i].abs() - 1.0) / ratio[i]));
     let b: Vec<N> = core::array::from_fn(|i| ball[i] / ratio[i]);
     let (bb, mean) = (dot(b, b), (0..N).map(|i| b[i] * b[i] / ratio[i]).sum::<f64>());
-    low = low.max(bb.sqrt() - mean / bb);
-    let norm_c = dot(c, c).sqrt();
+    low = low.max(sqrt(bb) - mean / bb);
+    let norm_c = sqrt(dot(c, c));
     let newton = excess / (1.0 + norm_c) * (norm_c * norm_c) / (0..N).map(|i| squares[i] * ratio[i]).sum::<f64>();
     low = low.max(newton);
 
@@ -91,7 +89,7 @@ pub(crate) fn solve<const N: usize>(
         }
         // φ² − 1, by the difference that cancels less.
         let above = if excess < 1.0 { above } else { phi2 - 1.0 };
-        let phi = phi2.sqrt();
+        let phi = sqrt(phi2);
         observer(tau * scale, phi);
         // (φ − 1)·φ²/t
         let step = above / (1.0 + phi) * phi2 / slope;
@@ -115,7 +113,7 @@ pub(crate) fn solve<const N: usize>(
         x[i] = ball[i] / (1.0 + tau * ratio[i]);
     }
     // The last rounding errors of τ go into the length; the unit vector is a point of E₂.
-    let norm = dot(x, x).sqrt();
+    let norm = sqrt(dot(x, x));
     let x = x.map(|x| x / norm);
     let nu = tau * scale;
     let y = combine(v, x);
@@ -147,7 +145,7 @@ fn plain_margin<const N: usize>(pair: &Pair<N>, y: Vec<N>) -> Option<f64> {
     let plain = squared - 1.0;
     let least = (1..N).fold(pair.a1[0], |m, i| m.min(pair.a1[i]));
     // (‖v‖ + ‖r‖)‖w‖/a₁ against 64·m
-    let sure = (size(v) + size(r)) * squared.sqrt() < 64.0 * (plain.abs() * least);
+    let sure = (size(v) + size(r)) * sqrt(squared) < 64.0 * (plain.abs() * least);
     (sure || !squared.is_finite()).then_some(plain)
 }
 
@@ -165,7 +163,7 @@ fn refined_margin<const N: usize>(pair: &Pair<N>, basis: &Svd<N>, y: Vec<N>, nu:
     let mut excess = 0.0;
     for i in 0..N {
         let sigma = basis.sigma[i];
-        let root = hypot(sigma, nu.sqrt());
+        let root = hypot(sigma, sqrt(nu));
         let part = (sigma / root) * dot(basis.u[i], w) + (nu / root) * dot(basis.v[i], y);
         excess += part * part;
     }

@@ -36,6 +36,7 @@
 //!
 //! About a robot:
 //! - *Is its path free, at every time, and what does it meet first?* [`Linkage::path`].
+//! - *The same along a spline?* [`Linkage::path_along`], with a [`JointTrajectory`] that you implement.
 //! - *Do two of its links ever meet, at any positions of the joints?* [`Linkage::joint_box`].
 //!
 //! About a ray and a shape:
@@ -58,8 +59,8 @@
 //! - *What proves it?* [`distance_certificate`] and its like: a [`Certificate`] for a checker that trusts nothing
 //!   else.
 //!
-//! Every answer says how the iteration ended ([`Status`]), and every distance, depth, λ and time has a lower and an
-//! upper bound that come from the geometry: one from a separating plane, the other from points of the bodies.
+//! Every answer says how the iteration ended ([`Status`]). Every distance, depth, λ and time has a lower and an upper
+//! bound from the geometry: one from a separating plane, the other from points of the bodies.
 //! [`Outcome`] tells a hit, a miss and an undecided cast apart. If a program has to choose, it is safe to treat an
 //! undecided cast as a hit at its lower bound. The iterative functions have a variant `…_with` that shows an
 //! [observer](Iterate) every iterate.

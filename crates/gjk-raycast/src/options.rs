@@ -84,7 +84,7 @@ impl<V: Vector> DistanceOptions<V> {
         Self { extra: Closer::named(), ..Self::lean() }
     }
 
-    /// The default options, with no machine code besides GJK: a program in which all options are lean has three tenths
+    /// The default options, with no machine code besides GJK: a program in which all options are lean has a third
     /// of the code for distances.
     ///
     /// The second measurement near contact is left out: of bodies that are apart, or overlap, by no more than a few
@@ -393,7 +393,7 @@ impl<V: Vector> MotionCastOptions<V> {
     }
 
     /// The default options, with no machine code besides GJK, closed forms, and the closest points of the last time: a
-    /// program in which all options are lean has a third of the code for motion casts.
+    /// program in which all options are lean has under two fifths of the code for motion casts.
     ///
     /// The search then does without the shortest way out of an overlap, the facets of two boxes, the proof that bodies
     /// without an inside have passed through one another, and the linear cast, so that motions that do not turn are

@@ -10,8 +10,7 @@ use crate::points::Copied;
 use crate::shape::Shape;
 use crate::weight::Weight;
 
-/// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in a dimension known at run time; see
-/// [`Ellipsoid`](crate::Ellipsoid).
+/// An ellipsoid in a dimension known at run time; see [`Ellipsoid`](crate::Ellipsoid).
 #[derive(Clone, Debug, PartialEq)]
 pub struct EllipsoidDyn {
     shape: Shape<Dynamic>,
@@ -59,13 +58,13 @@ impl EllipsoidDyn {
         (self.dimension() == N).then(|| Ellipsoid::from_shape(&self.shape.clone().in_dimension(Const::<N>)))
     }
 
-    /// ln det X = −2·Σ ln semi-axis, over the semi-axes that are not zero.
+    /// The logarithm of the determinant of X; see [`Ellipsoid::log_det`](crate::Ellipsoid::log_det).
     #[must_use]
     pub fn log_det(&self) -> f64 {
         self.shape.log_det
     }
 
-    /// |diag(1/a)·Rᵀ(x − c)|: 1 on the surface, less inside.
+    /// 1 on the surface, less inside; see [`Ellipsoid::radius_at`](crate::Ellipsoid::radius_at).
     ///
     /// # Panics
     /// If `x` has not as many coordinates as the ellipsoid.
@@ -85,7 +84,7 @@ impl EllipsoidDyn {
         self.radius_at(x) <= 1.0
     }
 
-    /// max direction·x over the ellipsoid; see [`Ellipsoid::support_value`](crate::Ellipsoid::support_value).
+    /// The largest direction·x over the ellipsoid; see [`Ellipsoid::support_value`](crate::Ellipsoid::support_value).
     ///
     /// # Panics
     /// If `direction` has not as many coordinates as the ellipsoid.

@@ -4,7 +4,7 @@ use crate::numerics::dimension::Const;
 use crate::numerics::twofold;
 use crate::shape::Shape;
 
-/// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in N dimensions.
+/// An ellipsoid in N dimensions: E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 }.
 ///
 /// It is kept by centre, orthonormal axes and semi-axes, which are accurate at any aspect ratio;
 /// [`matrix`](Self::matrix) is formed from them. The condition of X is the square of the aspect ratio. So beyond an
@@ -62,7 +62,7 @@ impl<const N: usize> Ellipsoid<N> {
         self.matrix
     }
 
-    /// ln det X = −2·Σ ln semi-axis, over the semi-axes that are not zero.
+    /// The logarithm of the determinant of X: −2·Σ ln semi-axis, over the semi-axes that are not zero.
     #[must_use]
     pub const fn log_det(&self) -> f64 {
         self.log_det
@@ -75,8 +75,8 @@ impl<const N: usize> Ellipsoid<N> {
         crate::shape::log_unit_ball_volume(rank) - 0.5 * self.log_det
     }
 
-    /// The length |diag(1/a)·Rᵀ(x − c)|: 1 on the surface, less inside. Components across the affine hull of a flat
-    /// ellipsoid are ignored.
+    /// The factor by which the ellipsoid has to be scaled about its centre to have `x` on its surface: 1 on the surface,
+    /// less inside. It is |diag(1/a)·Rᵀ(x − c)|. Components across the affine hull of a flat ellipsoid are ignored.
     #[must_use]
     pub fn radius_at(&self, x: impl Into<[f64; N]>) -> f64 {
         radius_at(&self.center, self.axes.as_flattened(), &self.semi_axes, &x.into())
@@ -88,9 +88,9 @@ impl<const N: usize> Ellipsoid<N> {
         self.radius_at(x) <= 1.0
     }
 
-    /// The support value max direction·x over the ellipsoid, = direction·c + |diag(a)·R·direction|; the direction need
-    /// not be of unit length. Its sums are in twice the precision, so that it is right to a few roundings however thin
-    /// the ellipsoid is.
+    /// The support value: the largest direction·x over the ellipsoid, direction·c + |diag(a)·R·direction|. The direction
+    /// need not be of unit length. Sums are in twice the precision, so that the value is right to a few roundings however
+    /// thin the ellipsoid is.
     #[must_use]
     pub fn support_value(&self, direction: impl Into<[f64; N]>) -> f64 {
         support_value(&self.center, self.axes.as_flattened(), &self.semi_axes, &direction.into())

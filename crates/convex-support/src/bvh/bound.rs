@@ -43,8 +43,8 @@ fn rounding<S: Scalar>() -> S {
     S::from_f64(8.0) * S::EPSILON
 }
 
-/// The time λ ≥ 0, from below, at which a box that moves along a ray meets another box: the moving box has the given
-/// half extents and its centre is at `source + λ·direction`. With half extents of zero this is a ray cast.
+/// A lower bound on the time λ ≥ 0 at which a box that moves along a ray meets another box. The moving box has the given
+/// half extents, and its centre is at `source + λ·direction`. With half extents of zero this is a ray cast.
 ///
 /// The moving box touches a box B where its centre is in B grown by the half extents, so that coordinate by coordinate
 ///

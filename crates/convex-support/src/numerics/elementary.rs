@@ -9,6 +9,12 @@
 use super::range::is_comfortable;
 use crate::Scalar;
 
+/// √x: by the processor's instruction, or without the standard library by libm, to the same bits.
+#[inline]
+pub fn sqrt<S: Scalar>(x: S) -> S {
+    num_traits::Float::sqrt(x)
+}
+
 /// Sine and cosine.
 #[inline]
 pub fn sin_cos<S: Scalar>(angle: S) -> (S, S) {

@@ -1,10 +1,7 @@
 //! Principal axes of a small symmetric positive definite matrix.
 
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
-
 use super::double_double::DoubleDouble;
-use super::elementary::hypot;
+use super::elementary::{hypot, sqrt};
 use super::range::power_of_two_below;
 use crate::InvalidShape;
 
@@ -30,7 +27,7 @@ const MAX_SWEEPS: usize = 40;
 /// QR*, 1992).
 pub fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, InvalidShape> {
     // In units of an even power of two near the largest entry, neither products nor roots leave the range of numbers.
-    let root = power_of_two_below(x.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs())).sqrt());
+    let root = power_of_two_below(sqrt(x.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs()))));
     x = x.map(|row| row.map(|entry| entry / root / root));
     let largest = x.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs()));
     for (row, column) in [(1, 0), (2, 0), (2, 1)] {
@@ -56,7 +53,7 @@ pub fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, Invali
             return Err(InvalidShape::NotPositiveDefinite);
         }
         left[p] = false;
-        let pivot_root = x[p][p].high.sqrt();
+        let pivot_root = sqrt(x[p][p].high);
         *column = core::array::from_fn(|i| if i == p || (i < n && left[i]) { x[i][p].high / pivot_root } else { 0.0 });
         let pivot_row = x[p];
         for i in 0..n {
@@ -79,7 +76,7 @@ pub fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, Invali
         }
     }
 
-    let lengths: [f64; 3] = core::array::from_fn(|k| dot(g[k], g[k]).sqrt());
+    let lengths: [f64; 3] = core::array::from_fn(|k| sqrt(dot(g[k], g[k])));
     let mut directions: [[f64; 3]; 3] = core::array::from_fn(|k| g[k].map(|c| c / lengths[k]));
     if lengths[..n].iter().any(|&l| !(l > 0.0 && l.is_finite())) {
         return Err(InvalidShape::NotPositiveDefinite);
@@ -93,7 +90,7 @@ pub fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, Invali
 /// Rotates columns `i` and `j` of `g` within their plane until they are orthogonal. Returns whether they were not.
 fn orthogonalise(g: &mut [[f64; 3]; 3], i: usize, j: usize) -> bool {
     let (a, b, c) = (dot(g[i], g[i]), dot(g[j], g[j]), dot(g[i], g[j]));
-    if c.abs() <= f64::EPSILON * (a * b).sqrt() {
+    if c.abs() <= f64::EPSILON * sqrt(a * b) {
         return false;
     }
     // tan 2θ = 2c/(b − a); t is the smaller of the two tangents of θ.

@@ -14,7 +14,7 @@ use crate::{
     SupportMap, Vector,
 };
 
-/// The ellipsoid `{ c + R·diag(a)·u : |u| ≤ 1 }`; an ellipse in 2D.
+/// An ellipsoid, in 2D an ellipse: the points `c + R·diag(a)·u` with `|u| ≤ 1`.
 ///
 /// It is kept as centre `c`, orthonormal axes (the columns of `R`) and semi-axes `a`. The matrix form
 /// `{ x : (x − c)ᵀX(x − c) ≤ 1 }` has `X = R·diag(a)⁻²·Rᵀ`, whose condition is the square of the aspect ratio:

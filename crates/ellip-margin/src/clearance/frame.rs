@@ -1,11 +1,10 @@
 //! Ellipsoids in the coordinates of the search, three in either dimension, and bounds in the norm of a link.
 
 use convex_support::glam::Vec4;
+use convex_support::numerics::elementary::sqrt;
 use convex_support::{
     Aabb, Bound, Boxes, CoarseBound, CoarseUnit, Ellipsoid, Frame, Matrix, Scalar, Vector, outer_box,
 };
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 use crate::numerics::{dot, sub};
 
@@ -28,7 +27,7 @@ impl LinkFrame {
     #[inline]
     pub(super) fn sphere_distance<V: Vector>(&self, obstacle: &Ellipsoid<V>, radius: f64) -> f64 {
         let r = sub(padded(obstacle.center()), self.center);
-        let norm = dot(r, r).sqrt();
+        let norm = sqrt(dot(r, r));
         (norm - radius - 16.0 * f64::EPSILON * (norm + radius)) / self.radius
     }
 
@@ -52,13 +51,13 @@ impl LinkFrame {
     /// The distance of the ball's centre from the tangent plane of the obstacle with the normal `n` of the ball, for
     /// the obstacle's centre at `g`.
     fn tangent_distance<V: Vector>(&self, obstacle: &Ellipsoid<V>, n: [f64; 3], g: [f64; 3]) -> f64 {
-        let length = dot(n, n).sqrt();
+        let length = sqrt(dot(n, n));
         let n = n.map(|x| x / length);
         let world: [f64; 3] = core::array::from_fn(|k| (0..3).map(|i| self.rows[i][k] * n[i]).sum());
         let (axes, a): ([[f64; 3]; 3], [f64; 3]) = (columns(obstacle.axes()), padded(obstacle.semi_axes()));
         let u: [f64; 3] = core::array::from_fn(|k| a[k] * dot(axes[k], world));
-        let (along, height) = (dot(n, g), dot(u, u).sqrt());
-        along - height - 16.0 * f64::EPSILON * (dot(g, g).sqrt() + height)
+        let (along, height) = (dot(n, g), sqrt(dot(u, u)));
+        along - height - 16.0 * f64::EPSILON * (sqrt(dot(g, g)) + height)
     }
 }
 
@@ -70,7 +69,7 @@ impl<V: Vector> Bound<V> for LinkFrame {
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
         let (r, half) = (sub(padded(around.center()), self.center), padded(around.half_extents()));
         let gaps = self.rows.map(|row| (dot(row, r).abs() - dot(row.map(f64::abs), half)).max(0.0));
-        V::Scalar::from_f64(dot(gaps, gaps).sqrt())
+        V::Scalar::from_f64(sqrt(dot(gaps, gaps)))
     }
 
     /// In the frame of a tree, `x = o + ξ/k`, a coordinate is `(n·ξ + k·n·(o − c))/k` with `n` a row, here in units of
@@ -155,5 +154,5 @@ pub(super) fn displacement<V: Vector>(before: &Ellipsoid<V>, now: &Ellipsoid<V>)
             dot(d, d)
         })
         .sum();
-    dot(shift, shift).sqrt() + turn.sqrt()
+    sqrt(dot(shift, shift)) + sqrt(turn)
 }

@@ -1,8 +1,7 @@
 //! The least margin so far, and the bounds that exclude a pair.
 
+use convex_support::numerics::elementary::sqrt;
 use convex_support::{Scalar, Vector};
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 use crate::Margin;
 
@@ -53,7 +52,7 @@ impl<V: Vector> Least<V> {
 /// √(1 + m), from below.
 pub(super) fn scale<V: Vector>(margin: Margin<V>) -> f64 {
     let rounding = 8.0 * V::Scalar::EPSILON.as_f64();
-    ((1.0 + margin.margin.as_f64()) * (1.0 - rounding) - rounding).max(0.0).sqrt()
+    sqrt(((1.0 + margin.margin.as_f64()) * (1.0 - rounding) - rounding).max(0.0))
 }
 
 /// A margin, with the ε of its type.
@@ -71,7 +70,7 @@ impl Limit {
 
     /// The greatest √(1 + m) that is not excluded, but for rounding.
     pub(super) fn scale(self) -> f64 {
-        self.squared().sqrt()
+        sqrt(self.squared())
     }
 
     fn squared(self) -> f64 {

@@ -2,9 +2,8 @@
 
 use core::ops::ControlFlow;
 
+use convex_support::numerics::elementary::sqrt;
 use convex_support::{Bvh, Ellipsoid, Scalar, Vector};
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 use super::LeftOut;
 use super::frame::{LinkFrame, columns, padded};
@@ -94,7 +93,7 @@ type Reason = fn(&mut LeftOut) -> &mut usize;
 fn normal<V: Vector>(obstacle: &Ellipsoid<V>, margin: &Margin<V>) -> [f64; 3] {
     let (axes, a, y) = (columns(obstacle.axes()), padded(obstacle.semi_axes()), padded(margin.ball_point));
     let z: [f64; 3] = core::array::from_fn(|i| (0..V::DIM).map(|k| -axes[k][i] * (y[k] / a[k])).sum());
-    let norm = dot(z, z).sqrt();
+    let norm = sqrt(dot(z, z));
     z.map(|x| x / norm)
 }
 

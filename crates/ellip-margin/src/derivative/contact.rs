@@ -26,9 +26,7 @@
 //! that the rows of M are these products. The condition of the triangle of M = QR is then the aspect and not its
 //! square.
 
-use convex_support::numerics::elementary::hypot;
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
+use convex_support::numerics::elementary::{hypot, sqrt};
 
 use super::side::{Side, spun, wedge};
 use crate::numerics::{Vec, add, dot, unit};
@@ -145,7 +143,7 @@ impl<const N: usize> Contact<N> {
         value: Option<f64>,
     ) -> Option<Self> {
         let unit = unit(direction);
-        let [h1, h2] = heights(pair, unit).map(|u| dot(u, u).sqrt());
+        let [h1, h2] = heights(pair, unit).map(|u| sqrt(dot(u, u)));
         let gauge = weighted(quantity.constraint, [1.0, h1, h2]);
         let normal = unit.map(|x| x / gauge);
         let tangents = tangents(unit);
@@ -285,7 +283,7 @@ impl<const N: usize> Contact<N> {
             k * (most - least) * (most + least) / side.h
         };
         let squared = dot(self.normal, self.normal);
-        let lever = (dot(self.r, self.r) / squared).sqrt();
+        let lever = sqrt(dot(self.r, self.r) / squared);
         stiffness(mover) > stiffness(mover.other()).max(lever)
     }
 
@@ -309,7 +307,7 @@ impl Rates {
         // The unit of length is a power of two.
         let inverse = 1.0 / units.length;
         // The unit of the value may be one too, but its root has other digits: only that of the slope is taken.
-        let root = slope.sqrt();
+        let root = sqrt(slope);
         let (slope, curvature) = (slope * units.value, 0.5 * (curvature * units.value));
         let mut offset = [0.0; 6];
         for i in 0..6 {
@@ -365,11 +363,11 @@ fn tangents<const N: usize>(n: Vec<N>) -> [Vec<N>; 2] {
 fn root<const N: usize>(isotropic: f64, sides: [(&Side<N>, f64); 2]) -> [f64; 3] {
     // Up to two rows of the isotropic part, and a row per body and plane of its axes.
     let mut columns = [[0.0; 8]; 2];
-    let isotropic = isotropic.max(0.0).sqrt();
+    let isotropic = sqrt(isotropic.max(0.0));
     (columns[0][0], columns[1][1]) = (isotropic, isotropic);
     let mut row = 2;
     for (side, k) in sides {
-        let weight = (k.max(0.0) / side.h).sqrt();
+        let weight = sqrt(k.max(0.0) / side.h);
         let y = side.tangents.map(|tangent| -> Vec<N> { core::array::from_fn(|i| side.a[i] * tangent[i]) });
         for i in 0..N {
             for j in i + 1..N {
@@ -381,9 +379,9 @@ fn root<const N: usize>(isotropic: f64, sides: [(&Side<N>, f64); 2]) -> [f64; 3]
         }
     }
     let [first, second] = columns;
-    let r11 = dot(first, first).sqrt();
+    let r11 = sqrt(dot(first, first));
     let r12 = dot(first, second) / r11;
     let along = r12 / r11;
     let rest: Vec<8> = core::array::from_fn(|i| second[i] - along * first[i]);
-    [r11, r12, dot(rest, rest).sqrt()]
+    [r11, r12, sqrt(dot(rest, rest))]
 }

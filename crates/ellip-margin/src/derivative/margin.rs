@@ -14,9 +14,8 @@
 //! The second derivatives are those of m = ρ² − 1: m″ = 2ρρ″ + 2ρ′ρ′ᵀ, a sum of positive semidefinite terms for
 //! translations.
 
+use convex_support::numerics::elementary::sqrt;
 use convex_support::{Ellipsoid, MotionGradient, Scalar, Vector};
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 use super::OfContact;
 use super::contact::{Contact, Form, Mover, Quantity, Units};
@@ -34,7 +33,7 @@ impl<V: Vector> OfContact<V> for Margin<V> {
         let (beta, z) = beta_and_z::<V, N>(self, e1, e2);
         let points = [unit(beta), load::<V, N>(self.ball_point).map(|y| -y)];
         let (pair, length) = Pair::<N>::new(e1, e2).in_own_unit();
-        let rho = dot(beta, beta).sqrt();
+        let rho = sqrt(dot(beta, beta));
         let contact = Contact::at_points(&pair, Quantity::GROWTH, z.map(|z| -z), points, Some(rho))?;
         let form = Form { slope: 2.0 * contact.value, curvature: 2.0, units: Units { value: 1.0, length } };
         Some((contact, form))

@@ -26,7 +26,7 @@ use crate::polynomial;
 use crate::secular::Solution;
 use crate::{MarginOptions, Status};
 
-/// Two points and a slab that bound the Euclidean distance between them.
+/// Bounds on the Euclidean distance of two ellipsoids, by a slab between them and a point of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]

@@ -18,9 +18,7 @@
 //!
 //! which is slower, because β at most grows by half, but always descends.
 
-use convex_support::numerics::elementary::{exp, ln};
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
+use convex_support::numerics::elementary::{exp, ln, sqrt};
 
 use crate::numerics::{Factor, Vec, combine, dot};
 use crate::pair::Pair;
@@ -75,7 +73,7 @@ pub(super) fn closest<const N: usize>(
         }
         for k in 0..2 {
             beta[k] *= match (is_step, swift) {
-                (false, _) => squared_ratio[k].sqrt(),
+                (false, _) => sqrt(squared_ratio[k]),
                 (true, true) => exp(newton[k].clamp(-TRUST, TRUST)),
                 // Equal to 1 + x to first order, and positive.
                 (true, false) if newton[k] < 0.0 => 1.0 / (1.0 - newton[k]),

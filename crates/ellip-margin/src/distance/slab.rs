@@ -14,10 +14,8 @@
 //! that lies below n′·r − h₁(n′) − h₂(n′) − f‖n′‖²/2 and meets it at n. With the tangent θ of the angle between n and
 //! p₂ − p₁ the bracket's relative width is θ²/2: it closes with twice the digits of n.
 
-use convex_support::numerics::elementary::hypot;
+use convex_support::numerics::elementary::{hypot, sqrt};
 use convex_support::{Scalar, Vector};
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 use super::DistanceBracket;
 use crate::numerics::{DoubleDouble, Factor, Vec, add, combine, dot, size, store, sub, unit};
@@ -76,7 +74,7 @@ impl<const N: usize> Slab<N> {
     pub(super) fn new(pair: &Pair<N>, n: Vec<N>) -> Self {
         let side = |axes: &[Vec<N>; N], a: &Vec<N>, sign: f64| {
             let u: Vec<N> = core::array::from_fn(|k| a[k] * dot(axes[k], n));
-            let h = dot(u, u).sqrt();
+            let h = sqrt(dot(u, u));
             // If a body is so small against the other that its square underflows, it counts as a point.
             let inverse = if h > 0.0 { sign / h } else { 0.0 };
             (u, h, combine(*axes, core::array::from_fn(|k| a[k] * (u[k] * inverse))))
@@ -90,7 +88,7 @@ impl<const N: usize> Slab<N> {
 
     /// ‖p₂ − p₁‖.
     pub(super) fn length(&self) -> f64 {
-        dot(self.across, self.across).sqrt()
+        sqrt(dot(self.across, self.across))
     }
 
     /// θ²: the squared tangent of the angle between n and p₂ − p₁; infinite if it is not below a right angle.
@@ -154,7 +152,7 @@ impl<const N: usize> Slab<N> {
     /// A bound on the rounding of `width`: the products with the axes have errors of ε times the bodies' extents.
     fn rounding(&self, pair: &Pair<N>) -> f64 {
         let r = pair.r();
-        let extent = pair.a1.iter().chain(&pair.a2).fold(dot(r, r).sqrt(), |m, a| m.max(*a));
+        let extent = pair.a1.iter().chain(&pair.a2).fold(sqrt(dot(r, r)), |m, a| m.max(*a));
         16.0 * f64::EPSILON * extent
     }
 
@@ -191,7 +189,7 @@ impl<const N: usize> Slab<N> {
         let slack = if self.is_wide(pair) { self.rounding(pair) } else { 8.0 * f64::EPSILON * width.abs() };
         // The lengths along and across n, so that the width's digits are not lost.
         let t = sub(self.across, self.n.map(|x| x * self.width));
-        let upper = hypot(width, dot(t, t).sqrt());
+        let upper = hypot(width, sqrt(dot(t, t)));
         // Rounding to an `f32` must not close the bracket either.
         let coarse = V::Scalar::EPSILON;
         DistanceBracket {

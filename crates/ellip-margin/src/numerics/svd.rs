@@ -6,8 +6,7 @@
 //! Drmač and Veselić, *New fast and accurate Jacobi SVD algorithm*, 2008). Forming BᵀB first would lose all of
 //! those below 1e-8 of the largest.
 
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
+use convex_support::numerics::elementary::sqrt;
 
 use super::{Vec, dot};
 
@@ -23,7 +22,7 @@ impl<const N: usize> Svd<N> {
     /// ĉ = Vᵀc = Σ⁻¹Uᵀg of two vectors with g = Bc: each coordinate from the side with the smaller rounding error.
     pub(crate) fn coordinates(&self, c: Vec<N>, g: Vec<N>) -> Vec<N> {
         let Self { sigma, u, v } = self;
-        let (norm_c, norm_g) = (dot(c, c).sqrt(), dot(g, g).sqrt());
+        let (norm_c, norm_g) = (sqrt(dot(c, c)), sqrt(dot(g, g)));
         core::array::from_fn(|i| if norm_g < sigma[i] * norm_c { dot(u[i], g) / sigma[i] } else { dot(v[i], c) })
     }
 }
@@ -51,14 +50,14 @@ pub(crate) fn svd<const N: usize>(b: [Vec<N>; N]) -> Svd<N> {
         for row in &mut a {
             row.swap(k, pivot);
         }
-        let norm = rest(&a, k).sqrt();
+        let norm = sqrt(rest(&a, k));
         if norm == 0.0 {
             break;
         }
         let mut h: Vec<N> = core::array::from_fn(|i| if i < k { 0.0 } else { a[i][k] });
         h[k] += norm.copysign(h[k]);
         // ‖h‖²/2 = norm·|h_k|
-        let root = (norm * h[k].abs()).sqrt();
+        let root = sqrt(norm * h[k].abs());
         h = h.map(|x| x / root);
         for j in k..N {
             let along: f64 = (k..N).map(|i| h[i] * a[i][j]).sum();
@@ -86,7 +85,7 @@ pub(crate) fn svd<const N: usize>(b: [Vec<N>; N]) -> Svd<N> {
         }
     }
 
-    let norms = a.map(|row| dot(row, row).sqrt());
+    let norms = a.map(|row| sqrt(dot(row, row)));
     Svd {
         sigma: norms.map(|s| s * scale),
         u: turn.map(|row| {
@@ -105,13 +104,13 @@ pub(crate) fn svd<const N: usize>(b: [Vec<N>; N]) -> Svd<N> {
 /// whether they were not.
 fn orthogonalise<const N: usize>(a: &mut [Vec<N>; N], turn: &mut [Vec<N>; N], i: usize, j: usize) -> bool {
     let (p, q, pq) = (dot(a[i], a[i]), dot(a[j], a[j]), dot(a[i], a[j]));
-    if pq.is_nan() || pq.abs() <= f64::EPSILON * (p.sqrt() * q.sqrt()) {
+    if pq.is_nan() || pq.abs() <= f64::EPSILON * (sqrt(p) * sqrt(q)) {
         return false;
     }
     // tan 2θ = 2pq/(q − p); t is the smaller of the two tangents of θ.
     let zeta = (q - p) / (2.0 * pq);
-    let t = zeta.signum() / (zeta.abs() + (1.0 + zeta * zeta).sqrt());
-    let cosine = 1.0 / (1.0 + t * t).sqrt();
+    let t = zeta.signum() / (zeta.abs() + sqrt(1.0 + zeta * zeta));
+    let cosine = 1.0 / sqrt(1.0 + t * t);
     let sine = cosine * t;
     for m in [a, turn] {
         let (x, y) = (m[i], m[j]);

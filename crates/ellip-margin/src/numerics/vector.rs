@@ -1,8 +1,7 @@
 //! Vectors as plain arrays of `f64`, and matrices as arrays of their columns.
 
+use convex_support::numerics::elementary::sqrt;
 use convex_support::{Matrix, Scalar, Vector};
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 pub(crate) type Vec<const N: usize> = [f64; N];
 
@@ -66,6 +65,6 @@ pub(crate) fn combine<const N: usize>(columns: [Vec<N>; N], e: Vec<N>) -> Vec<N>
 pub(crate) fn unit<const N: usize>(x: Vec<N>) -> Vec<N> {
     let largest = x.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let x = x.map(|x| x / largest);
-    let norm = dot(x, x).sqrt();
+    let norm = sqrt(dot(x, x));
     x.map(|x| x / norm)
 }

@@ -11,8 +11,6 @@
 //! > β = bᵀy = bᵀ(Gp + G²q)/(1 − bᵀG²b).
 
 use convex_support::{Ellipsoid, Vector};
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 use crate::margin::{answer, solve};
 use crate::numerics::{Vec, add, combine, dot, sub, unit};

@@ -7,8 +7,7 @@
 //!
 //! which takes one division and no root, and squares the error twice over.
 
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
+use convex_support::numerics::elementary::sqrt;
 
 /// N(ν) = D(ν)², by its coefficients from the constant one up.
 #[derive(Clone, Copy, Debug)]
@@ -96,12 +95,12 @@ impl Taylor {
     #[inline(always)]
     pub(super) fn hebden(&self) -> f64 {
         let ([n0, n1, ..], [d0, d1, ..]) = (self.n, self.d);
-        (n0.sqrt() - d0) * (2.0 * n0 / (2.0 * n0 * d1 - d0 * n1))
+        (sqrt(n0) - d0) * (2.0 * n0 / (2.0 * n0 * d1 - d0 * n1))
     }
 
     /// φ.
     #[inline(always)]
     pub(super) fn phi(&self) -> f64 {
-        self.n[0].sqrt() / self.d[0]
+        sqrt(self.n[0]) / self.d[0]
     }
 }

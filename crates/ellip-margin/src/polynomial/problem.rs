@@ -1,7 +1,6 @@
 //! The coefficients of the polynomial from the axes of both bodies, and the answer to a root.
 
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
+use convex_support::numerics::elementary::sqrt;
 
 use super::equation::{Equation, Taylor};
 use crate::numerics::{Vec, dot, size};
@@ -103,7 +102,7 @@ impl<const N: usize> Problem<N> {
         let [d0, d1, ..] = self.equation.d;
         let bb = self.equation.n[2 * N - 2];
         let from_zero = Taylor { n: [n0, n1, 0.0, 0.0], d: [d0, d1, 0.0, 0.0] }.hebden();
-        (bb.sqrt() - self.bcb / bb).max(from_zero)
+        (sqrt(bb) - self.bcb / bb).max(from_zero)
     }
 
     /// The answer to ν.

@@ -59,7 +59,7 @@ impl<V: Vector> Contact<V> {
     }
 }
 
-/// A point of a contact manifold. Its points are on the surfaces of both shapes, on a line along the normal.
+/// A point of a contact manifold: a point on the surface of each shape, both on one line along the normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactPoint<V: Vector> {

@@ -31,8 +31,8 @@ pub struct PathContact<V: Vector> {
     pub met: Met,
     /// Their cast, with the normal out of the other body. Times are those of the edge, which begins at 0 and ends at 1,
     /// and the bounds are those of all bodies: there is no contact before the lower one, and a contact, perhaps of
-    /// another body, at the upper one. The upper bound is more than 1 if the next edge has proved a contact at the end
-    /// of this one, by its time in the next edge.
+    /// another body, at the upper one. An upper bound of more than 1 means that the contact at the end of this edge was
+    /// proved only in the next edge, that much later.
     pub cast: MotionCast<V>,
 }
 

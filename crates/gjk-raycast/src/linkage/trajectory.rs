@@ -14,6 +14,11 @@ use convex_support::Scalar;
 /// bounds must hold at all times from 0 to 1, since they alone prove that nothing happens between two times that are
 /// examined. A larger bound costs time; a smaller one may let bodies pass through one another. An edge whose rates vary
 /// much is answered faster in several parts, each with its own bounds.
+///
+/// For a cubic, let `a`, `b`, `c` and `d` be the absolute values of the coefficients of 1, `t`, `t²` and `t³`. The
+/// bounds are `a + b + c + d`, `b + 2c + 3d`, `2c + 6d` and `6d`. By Horner's rule the error is at most
+/// `4ε(a + b + c + d)`: no coefficient passes through more than six roundings of `ε/2` each, with `ε` the machine
+/// epsilon, and `t` is at most 1.
 pub trait JointTrajectory {
     /// The type of numbers.
     type Scalar: Scalar;
@@ -25,7 +30,8 @@ pub trait JointTrajectory {
     fn bounds(&self, joint: usize) -> JointBounds<Self::Scalar>;
 }
 
-/// The value of a joint at one time, with its derivatives, which may be wrong by a few ε of their bounds.
+/// The value of a joint at one time, with its derivatives. Only the value needs an error bound: the derivatives may be
+/// wrong by a few ε of their bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointState<S> {
     /// The value.

@@ -69,7 +69,7 @@ pub struct BodyHit<H, S: Scalar> {
     pub hit: H,
     /// The lower end of its bracket.
     pub lower: S,
-    /// The upper end of its bracket; infinite for a hit that may be a miss.
+    /// The upper end of its bracket; infinite if it is not certain that the body is hit at all.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: S,
     /// How the iteration ended.
