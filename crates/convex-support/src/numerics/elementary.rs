@@ -40,7 +40,7 @@ pub fn atan2<S: Scalar>(y: S, x: S) -> S {
 pub fn hypot<S: Scalar>(x: S, y: S) -> S {
     let (x, y) = (x.as_f64(), y.as_f64());
     let squared = x * x + y * y;
-    S::from_f64(if is_comfortable(squared) { num_traits::Float::sqrt(squared) } else { libm::hypot(x, y) })
+    S::from_f64(if is_comfortable(squared) { sqrt(squared) } else { libm::hypot(x, y) })
 }
 
 /// The natural logarithm.
