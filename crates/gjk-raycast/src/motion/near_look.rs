@@ -73,8 +73,7 @@ impl<V: Vector> MovingPair<'_, V> {
         }
         // The origin of `b` is at zero, so that the difference of the origins is exact.
         let known = Uncertainty::of_exact_offset([placed.a.rounding(), placed.b.rounding()], offset);
-        let error_along = known.along(unit);
-        let error = error_along + slack(lower, radius);
+        let error = known.along(unit) + slack(lower, radius);
         // If a number is NaN, the points do not count as closest.
         if !(unit.dot(v) - lower <= error * Scalar::from_f64(IN_PLANE)) {
             return None;
@@ -83,7 +82,7 @@ impl<V: Vector> MovingPair<'_, V> {
         if !(distance > error) {
             // Points of segments are rounded by one product and one sum more than support points.
             let lost = V::Scalar::EPSILON * pair.extent();
-            upper = known.greatest_length(length, error_along) - radius + slack(length, radius) + lost;
+            upper = length + known.beyond(v) - radius + slack(length, radius) + lost;
             if !(upper < Scalar::ZERO) {
                 return None;
             }

@@ -11,6 +11,7 @@ mod faces;
 mod near_contact;
 mod newton;
 mod room;
+mod uncertainty;
 mod witness;
 mod zonotope;
 
@@ -23,13 +24,15 @@ use crate::extra::{Extra, in_static};
 use crate::gjk::{End, Gjk, rounding};
 use crate::observer::Observer;
 use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, Status, SubAlgorithm};
-use cores::{ClosedForm, WayOut, error_of_points};
-pub(crate) use cores::{Cores, Uncertainty, slack};
+pub(crate) use cores::Cores;
+use cores::{ClosedForm, WayOut};
 use expansion::{Expanded, expand};
 pub(crate) use faces::is_around_zero;
 use near_contact::NEAR;
 pub(crate) use near_contact::{NearContact, is_near_contact, near_contact_of};
 pub(crate) use room::{FromContact, across_corners, look_after};
+use uncertainty::error_of_points;
+pub(crate) use uncertainty::{Uncertainty, slack};
 use witness::{Ends, MetPoint};
 
 /// The question about two bodies, and when the search may stop.

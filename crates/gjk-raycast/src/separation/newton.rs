@@ -6,7 +6,8 @@ use num_traits::Float as _;
 use super::boundary::Boundary;
 use super::cores::{Cores, Vertex, WayOut};
 use crate::SignedDistanceOptions;
-use crate::symmetric::{Across, Symmetric, axes_across, dot};
+use crate::curvature::{between, is_stiff_across};
+use crate::symmetric::{Across, Symmetric, axes_across, dot, scaled};
 
 /// The largest tangent of an angle to turn by.
 const LARGEST: f64 = 0.5;
@@ -160,17 +161,12 @@ impl<V: Vector> Piece<V> {
             // A vertex is exact.
             FoldSide::Near | FoldSide::Far => zero,
         };
-        let along = (value - other_value + lead) / squared;
-        let mut step = (e.0 * along, e.1 * along);
-        if V::DIM == 3 {
-            let across = (-e.1, e.0);
-            let stiffness = dot(across, bend.times(across));
-            if !(stiffness > zero) {
-                return None;
-            }
-            let aside = -(dot(across, p) + dot(across, bend.times(step))) / stiffness;
-            step = (step.0 + across.0 * aside, step.1 + across.1 * aside);
-        }
+        let rise = value - other_value + lead;
+        let step = if V::DIM == 2 {
+            scaled(e, rise / squared)
+        } else {
+            is_stiff_across(bend, e).then(|| between(bend, p, e, rise))?
+        };
         turned(self.n, self.across, step)
     }
 }

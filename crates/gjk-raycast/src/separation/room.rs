@@ -3,12 +3,13 @@
 
 use core::array;
 
-use convex_support::numerics::bound::{raised, raised_vector, roundings, roundings_of};
+use convex_support::numerics::bound::{roundings, roundings_of};
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::faces::turned_right;
 use super::near_contact::{begin, go_on};
+use super::uncertainty::Uncertainty;
 use crate::body::{AnyPair, Both, Pair, PointPair, Shapes as _};
 use crate::gjk::Frame;
 use crate::shape::Shape;
@@ -91,15 +92,13 @@ pub(crate) fn look_after<V: Vector>(
             });
         }
         if is_found {
-            let [of_a, of_b] = [a.rounding(), b.rounding()];
             // In units of `ε/2`, weighted sums lose 5, the weights' own sum 4, the difference and its sum with the
             // offset one each; the offset loses 2, and the step to the surface 4.
-            let points = (of_a.extent + of_b.extent) * frame.per_unit;
-            let error = raised_vector((of_a.error + of_b.error) * frame.per_unit)
-                + roundings_of(12.0, points)
-                + roundings_of(4.0, frame.offset.abs() + V::splat(frame.radius));
-            let astray = astray * frame.per_unit;
-            let error = |u: V| raised(u.abs().dot(error)).min(frame.error + frame.noise) + astray;
+            let known = Uncertainty::new(&pair, frame.per_unit);
+            let rounded =
+                roundings_of(12.0, known.extent()) + roundings_of(4.0, frame.offset.abs() + V::splat(frame.radius));
+            let (known, astray) = (known.with(rounded), astray * frame.per_unit);
+            let error = |u: V| known.along(u).min(frame.error + frame.noise) + astray;
             times = room_around_zero(faces_of_octahedron(&corners), error, |u| from.reach(u)) * frame.scale;
         }
     }

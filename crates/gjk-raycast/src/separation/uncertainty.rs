@@ -1,0 +1,140 @@
+//! By how much computed points of the difference of two cores may be wrong.
+//!
+//! A point is wrong by what the [shapes state](Rounding) of their support points, and by what rounding has lost since.
+//! Both are known coordinate by coordinate, which tells more than a length: for a horizontal floor the error along the
+//! vertical does not depend on its width. What a shape states of the length counts where that is less, as for a body
+//! that is turned.
+
+use convex_support::numerics::bound::{raised, raised_vector};
+use convex_support::{Rounding, Scalar, Vector};
+use num_traits::Float as _;
+
+use crate::body::{AnyPair, Pair, Shapes};
+
+/// The rounding of a point of the difference, in units of ε times the coordinates of the cores and of the offset of
+/// their origins.
+///
+/// A dot product with a unit vector counts in: its three products and two sums lose 1.5 of their magnitudes. The sums
+/// `a − b` and `a − b + o` lose 0.5 each.
+const SUM: f64 = 2.6;
+const OFFSET: f64 = 2.1;
+
+/// A bound on the error of points of the difference of two cores, coordinate by coordinate.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Uncertainty<V: Vector> {
+    /// What both shapes state.
+    shapes: [Rounding<V>; 2],
+    /// What rounding has lost besides.
+    lost: V,
+}
+
+impl<V: Vector> Uncertainty<V> {
+    /// What the shapes state, in the unit: of points that are added up without rounding.
+    pub(super) fn new(pair: &AnyPair<'_, V>, per_unit: V::Scalar) -> Self {
+        let in_unit = |stated: Rounding<V>, error_length: V::Scalar| Rounding {
+            extent: stated.extent * per_unit,
+            error: raised_vector(stated.error * per_unit),
+            error_length: raised(stated.error_length.min(error_length) * per_unit),
+        };
+        let [a, b] = pair.shapes.each().map(|shape| shape.rounding());
+        Self { shapes: [in_unit(a, pair.core_a.error), in_unit(b, pair.core_b.error)], lost: V::ZERO }
+    }
+
+    /// For the sum of two points, each rounded to the shapes' extents, and an exact offset of their origins; in the
+    /// world's unit.
+    #[inline(always)]
+    pub(crate) fn of_exact_offset(shapes: [Rounding<V>; 2], offset: V) -> Self {
+        Self { shapes, lost: V::ZERO }.of_sums(offset)
+    }
+
+    /// The same where each point is added up in the vectors' own precision, with an exact offset.
+    #[inline(always)]
+    pub(super) fn of_sums(self, offset: V) -> Self {
+        let of = |units: f64| V::Scalar::EPSILON * Scalar::from_f64(units);
+        self.with(self.extent() * of(SUM) + offset.abs() * of(OFFSET))
+    }
+
+    /// The same where so much more is lost.
+    #[inline(always)]
+    pub(super) fn with(self, lost: V) -> Self {
+        Self { lost: self.lost + lost, ..self }
+    }
+
+    /// A bound on the coordinates of the sum of points of both shapes.
+    pub(super) fn extent(&self) -> V {
+        self.shapes[0].extent + self.shapes[1].extent
+    }
+
+    /// Whether what the shapes state is much less along one axis than along another.
+    pub(super) fn is_uneven(&self) -> bool {
+        let stated = self.shapes[0].error + self.shapes[1].error;
+        stated.min_element() * V::Scalar::from_f64(4.0) < stated.max_element()
+    }
+
+    /// A bound on the error of `n·p` for a unit vector `n` and a point `p`.
+    #[inline]
+    pub(crate) fn along(&self, n: V) -> V::Scalar {
+        let n = n.abs();
+        let of_shapes = self.shapes.iter().map(|shape| n.dot(shape.error).min(shape.error_length));
+        raised(of_shapes.fold(n.dot(self.lost), |sum, error| sum + error))
+    }
+
+    /// A bound on the length of the error of a point.
+    pub(crate) fn length(&self) -> V::Scalar {
+        raised(self.stated_length() + self.lost.norm())
+    }
+
+    /// The part of it that the shapes state.
+    pub(super) fn stated_length(&self) -> V::Scalar {
+        self.shapes[0].error_length + self.shapes[1].error_length
+    }
+
+    /// By how much the exact point for a computed one may be farther from zero. Along its own direction it is as wrong
+    /// as along any unit vector, and what it is wrong by across hardly adds to the length.
+    pub(crate) fn beyond(&self, p: V) -> V::Scalar {
+        let across = self.length();
+        let along = p.unit().map_or(across, |u| self.along(u));
+        along + added_across(p.norm() + along, across)
+    }
+}
+
+/// A bound on the error of points of the difference of two cores of the given size, as a length, in the world's unit:
+/// no less than any [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths,
+/// and the offset of the origins loses half an ε of its own.
+#[inline(always)]
+pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
+    pair: &Pair<'_, T>,
+    size: V::Scalar,
+) -> V::Scalar {
+    pair.error() + (size - pair.radius()) * (V::Scalar::EPSILON * Scalar::from_f64(SUM))
+}
+
+/// By how much an error `e` across a direction adds to the length `l` along it, at most: `√(l² + e²) − l` is
+/// `e²/(l + √(l² + e²))`, where the root is no less than either.
+#[inline(always)]
+fn added_across<S: Scalar>(length: S, error: S) -> S {
+    // If both are zero, the quotient is no number, and the error the minimum.
+    (error * (error / (length + length.max(error)))).min(error)
+}
+
+/// The rounding of a signed distance in the world's unit: unit vectors are so to 2ε, and the sum of the radii and the
+/// two sums that the radii and the length go into round to half of that.
+#[inline(always)]
+pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
+    S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::added_across;
+
+    /// What is known to lie `along` a direction, and to be wrong by some error across it, is no longer than that.
+    #[test]
+    fn an_error_across_makes_a_length_greater() {
+        for (length, error) in [(3.0, 4.0), (4.0, 3.0), (1.0, 1e-9), (1e-9, 1.0), (0.0, 1.0), (1.0, 0.0_f64)] {
+            let bound = length + added_across(length, error);
+            assert!(bound >= length.hypot(error) && bound <= length + error, "{length} {error} {bound}");
+        }
+        assert!(added_across(1.0_f64, f64::NAN).is_nan());
+    }
+}
