@@ -5,14 +5,12 @@ use convex_support::{Core, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::near_contact::{NEAR, NearContact, is_near_contact, near_contact};
-use super::room::{faces_of_simplex, room_around_zero};
 use super::uncertainty::{Uncertainty, error_of_points};
 use super::zonotope::{Zonotope, parallelotope};
 use super::{OfOverlap, Wanted};
 use crate::body::{AnyPair, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
-use crate::simplex::MAX_POINTS;
 use crate::symmetric::Symmetric;
 use crate::unit::lost_to_underflow;
 
@@ -126,7 +124,7 @@ impl<'a, V: Vector> Cores<'a, V> {
     /// Gets the errors of the shapes' points, coordinate by coordinate, which takes longer than many a distance. For a
     /// horizontal floor they do not depend on its width.
     #[inline(never)]
-    pub(crate) fn sharpen(&mut self) {
+    pub(super) fn sharpen(&mut self) {
         // Nothing is known about numbers out of range, whatever the shapes state.
         if self.uncertainty.is_some() || !self.error.is_finite() {
             return;
@@ -210,16 +208,6 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.pair.peeled != [Scalar::ZERO; 2]
     }
 
-    /// The radius of a ball about zero that is certainly within the simplex with these corners, one more than there are
-    /// dimensions; not positive if zero may be outside.
-    pub(crate) fn room_within(&self, corners: &[V]) -> V::Scalar {
-        let mut points = [V::ZERO; MAX_POINTS];
-        for (point, &corner) in points.iter_mut().zip(corners) {
-            *point = corner;
-        }
-        room_around_zero(faces_of_simplex(&points), |_| self.greatest_error(), |_| Scalar::ONE)
-    }
-
     /// The factor from lengths in the unit to the world's.
     pub(crate) fn scale(&self) -> V::Scalar {
         self.frame.scale
@@ -264,18 +252,18 @@ impl<'a, V: Vector> Cores<'a, V> {
     /// A bound on the error of `n·p`, for a unit vector `n` and a point `p` of the difference; and on how much a
     /// support point along `n` falls short of the support value.
     #[inline]
-    pub(crate) fn error_along(&self, n: V) -> V::Scalar {
+    pub(super) fn error_along(&self, n: V) -> V::Scalar {
         self.uncertainty.as_ref().map_or(self.error, |known| known.along(n)) + self.peeled_error
     }
 
     /// A bound on [`error_along`](Self::error_along) in any direction.
-    pub(crate) fn greatest_error(&self) -> V::Scalar {
+    pub(super) fn greatest_error(&self) -> V::Scalar {
         self.uncertainty.as_ref().map_or(self.error, Uncertainty::length) + self.peeled_error
     }
 
     /// A bound on the length of what a point `p` of the difference stands for.
     #[inline(always)]
-    pub(crate) fn greatest_length(&self, p: V) -> V::Scalar {
+    pub(super) fn greatest_length(&self, p: V) -> V::Scalar {
         p.norm() + self.uncertainty.as_ref().map_or(self.error, |known| known.beyond(p)) + self.peeled_error
     }
 
@@ -310,7 +298,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         let nearest = zonotope.nearest_facet::<V>()?;
         // Computed in double precision, of edges and an offset that are wrong by what the shapes say.
         self.sharpen();
-        let error = self.uncertainty.as_ref()?.stated_length() + self.lost_in_offset().norm();
+        let [of_a, of_b] = self.uncertainty.as_ref()?.of_shapes();
+        let error = of_a + of_b + self.lost_in_offset().norm();
         let half_ulp = V::Scalar::EPSILON * Scalar::from_f64(0.5 * nearest.depth);
         let [depth, inner, outer] = [nearest.depth, nearest.inner, nearest.outer].map(Scalar::from_f64);
         let error = error + half_ulp;

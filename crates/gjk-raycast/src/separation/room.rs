@@ -118,11 +118,13 @@ fn faces_of_octahedron<V: Vector>(ends: &[[V; 2]; 3]) -> impl Iterator<Item = [V
     })
 }
 
-/// The same for the simplex with these corners, one more than there are dimensions.
-pub(crate) fn faces_of_simplex<V: Vector>(corners: &[V; MAX_POINTS]) -> impl Iterator<Item = [V; MAX_POINTS]> {
+/// The radius of a ball about zero that is certainly within the simplex with these corners, one more than there are
+/// dimensions, given their error along a unit vector; not positive if zero may be outside.
+pub(crate) fn room_within<V: Vector>(corners: &[V], error: impl Fn(V) -> V::Scalar) -> V::Scalar {
     let faces: &[[usize; 3]] =
         if V::DIM == 2 { &[[0, 1, 2], [1, 2, 0], [2, 0, 1]] } else { &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] };
-    faces.iter().map(|face| array::from_fn(|i| corners[face[i % 3]]))
+    let faces = faces.iter().map(|face| array::from_fn(|i| corners[face[i % 3]]));
+    room_around_zero(faces, error, |_| Scalar::ONE)
 }
 
 /// How many times a set about zero fits into a polytope with these faces, given the polytope's error along a unit
@@ -132,7 +134,7 @@ pub(crate) fn faces_of_simplex<V: Vector>(corners: &[V; MAX_POINTS]) -> impl Ite
 /// If zero is behind all faces, or before all of them, the cones from zero to the faces fill the space, and each is
 /// in the polytope up to the plane of its face. If all corners are wrong by less than that distance, zero is still
 /// inside, and so are all points behind all planes.
-pub(crate) fn room_around_zero<V: Vector>(
+pub(super) fn room_around_zero<V: Vector>(
     faces: impl Iterator<Item = [V; MAX_POINTS]>,
     error: impl Fn(V) -> V::Scalar,
     reach: impl Fn(V) -> V::Scalar,

@@ -50,8 +50,8 @@ impl<V: Vector> Uncertainty<V> {
     /// The same where each point is added up in the vectors' own precision, with an exact offset.
     #[inline(always)]
     pub(super) fn of_sums(self, offset: V) -> Self {
-        let of = |units: f64| V::Scalar::EPSILON * Scalar::from_f64(units);
-        self.with(self.extent() * of(SUM) + offset.abs() * of(OFFSET))
+        let [sum, of_offset] = [SUM, OFFSET].map(|units| V::Scalar::EPSILON * Scalar::from_f64(units));
+        self.with(self.extent() * sum + offset.abs() * of_offset)
     }
 
     /// The same where so much more is lost.
@@ -81,12 +81,12 @@ impl<V: Vector> Uncertainty<V> {
 
     /// A bound on the length of the error of a point.
     pub(crate) fn length(&self) -> V::Scalar {
-        raised(self.stated_length() + self.lost.norm())
+        raised(self.shapes[0].error_length + self.shapes[1].error_length + self.lost.norm())
     }
 
-    /// The part of it that the shapes state.
-    pub(super) fn stated_length(&self) -> V::Scalar {
-        self.shapes[0].error_length + self.shapes[1].error_length
+    /// The parts of it that both shapes state.
+    pub(crate) fn of_shapes(&self) -> [V::Scalar; 2] {
+        self.shapes.map(|shape| shape.error_length)
     }
 
     /// By how much the exact point for a computed one may be farther from zero. Along its own direction it is as wrong
@@ -114,7 +114,7 @@ pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
 #[inline(always)]
 fn added_across<S: Scalar>(length: S, error: S) -> S {
     // If both are zero, the quotient is no number, and the error the minimum.
-    (error * (error / (length + length.max(error)))).min(error)
+    raised(error * (error / (length + length.max(error)))).min(error)
 }
 
 /// The rounding of a signed distance in the world's unit: unit vectors are so to 2ε, and the sum of the radii and the
