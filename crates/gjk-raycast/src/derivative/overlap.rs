@@ -188,16 +188,7 @@ impl<S: Scalar> Span<S> {
 
     /// The turn of the normal that makes it exactly across the feature, if that is an edge or a face.
     pub(super) fn turn(self, outline: &Outline<S>) -> Across<S> {
-        let zero = (S::ZERO, S::ZERO);
-        let slope = |e: Across<S>| {
-            let first = outline.corners[0].at;
-            outline.height(sum(first, e)) - outline.height(first)
-        };
-        match self {
-            Self::Vertex => zero,
-            Self::Edge(e) => scaled(e, -slope(e)),
-            Self::Face => (-slope((S::ONE, S::ZERO)), -slope((S::ZERO, S::ONE))),
-        }
+        if self == Self::Vertex { (S::ZERO, S::ZERO) } else { scaled(outline.tangent().gradient, -S::ONE) }
     }
 }
 
