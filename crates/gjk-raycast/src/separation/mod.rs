@@ -27,7 +27,7 @@ use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, Status, Su
 pub(crate) use cores::Cores;
 use cores::{ClosedForm, WayOut};
 use expansion::{Expanded, expand};
-pub(crate) use faces::is_around_zero;
+pub(crate) use faces::{ProjectedFace, is_around_zero};
 use near_contact::NEAR;
 pub(crate) use near_contact::{NearContact, is_near_contact, near_contact_of};
 pub(crate) use room::{FromContact, across_corners, look_after, room_within};

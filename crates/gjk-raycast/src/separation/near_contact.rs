@@ -12,7 +12,7 @@ use convex_support::numerics::twofold::{dot_minus, lost_in_sum};
 use convex_support::{Core, CoreKind, Scalar, Vector};
 use num_traits::Float;
 
-use super::faces::{about_edge, across_faces, is_around_zero};
+use super::faces::{ProjectedFace, about_edge, across_faces, is_around_zero};
 use super::uncertainty::Uncertainty;
 use crate::body::{AnyPair, Both, CastBody as _, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
@@ -429,39 +429,9 @@ impl<V: Vector> Known<V> {
 
     /// A bound on the distance of the bodies from a face of the difference that the line along the unit vector `n`
     /// through zero certainly pierces: then no corner of the face is nearer along `n`.
-    ///
-    /// Along `n` the face is projected to the plane of two coordinates, the ones where `n` is shorter. There zero is
-    /// within a triangle if the areas with its sides are all of one sign, by more than their errors; in the plane,
-    /// within a segment if its ends are on two sides.
     fn length_at_pierced(&self, state: &Gjk<V>, n: V) -> V::Scalar {
-        let number = V::Scalar::from_f64;
-        let points = state.simplex.points();
-        if points.len() != V::DIM {
-            return Float::infinity();
-        }
-        let longest = (0..V::DIM).reduce(|k, i| if n.get(i).abs() > n.get(k).abs() { i } else { k }).unwrap_or(0);
-        let seen = |p: V| {
-            let part = p.get(longest) / n.get(longest);
-            let mut others = (0..V::DIM).filter(|&i| i != longest).map(|i| p.get(i) - n.get(i) * part);
-            [others.next().unwrap_or_default(), others.next().unwrap_or_default()]
-        };
-        let mut corners = [[V::Scalar::ZERO; 2]; 3];
-        for (corner, &point) in corners.iter_mut().zip(points) {
-            *corner = seen(point);
-        }
-        let size = corners.iter().flatten().fold(V::Scalar::ZERO, |size, x| size.max(x.abs()));
-        // A coordinate loses two errors of the points, since `n` is no longer anywhere.
-        let wrong = self.error_of_corners();
-        let is_inside = if V::DIM == 2 {
-            let [p, q] = [corners[0][0], corners[1][0]];
-            p.min(q) < -wrong && p.max(q) > wrong
-        } else {
-            let area = |i: usize, j: usize| corners[i][0] * corners[j][1] - corners[i][1] * corners[j][0];
-            let areas = [area(0, 1), area(1, 2), area(2, 0)];
-            let wrong = (size + wrong) * wrong * number(6.0);
-            areas.iter().all(|&a| a > wrong) || areas.iter().all(|&a| a < -wrong)
-        };
-        if !is_inside {
+        let is_face = state.simplex.points().len() == V::DIM;
+        if !(is_face && ProjectedFace::along(n, state.simplex.padded().0).room() > self.error_of_corners()) {
             return Float::infinity();
         }
         // The face may be behind zero, which is outside all the same if the part beyond the face does not belong to the
