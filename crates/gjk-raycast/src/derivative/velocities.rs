@@ -175,7 +175,8 @@ impl<V: Vector> Solver<'_, V> {
             DifferenceSpan::None => (self.soft(r), [zero; 2]),
             DifferenceSpan::Edge(side, e) => {
                 let held = dot(e, turns[side]);
-                let change = self.held_along(e, held, r);
+                // K·n′ = r across the edge.
+                let change = between(self.stiffness, negative(r), e, held);
                 let along = dot(e, rest(change));
                 (change, slides(side, scaled(e, along)))
             }
@@ -197,11 +198,6 @@ impl<V: Vector> Solver<'_, V> {
     /// `K⁻¹·r`; in 2D there is one entry.
     fn soft(&self, r: Across<V::Scalar>) -> Across<V::Scalar> {
         if V::DIM == 2 { (r.0 / self.stiffness.a, V::Scalar::ZERO) } else { self.stiffness.solve(r) }
-    }
-
-    /// The change that is `held` along the unit vector `e`, and that meets `K·n′ = r` across it.
-    fn held_along(&self, e: Across<V::Scalar>, held: V::Scalar, r: Across<V::Scalar>) -> Across<V::Scalar> {
-        if V::DIM == 2 { scaled(e, held) } else { between(self.stiffness, negative(r), e, held) }
     }
 }
 

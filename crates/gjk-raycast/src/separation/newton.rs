@@ -7,7 +7,7 @@ use super::boundary::Boundary;
 use super::cores::{Cores, Vertex, WayOut};
 use crate::SignedDistanceOptions;
 use crate::curvature::{between, is_stiff_across};
-use crate::symmetric::{Across, Symmetric, axes_across, dot, scaled};
+use crate::symmetric::{Across, Symmetric, axes_across, dot};
 
 /// The largest tangent of an angle to turn by.
 const LARGEST: f64 = 0.5;
@@ -161,17 +161,11 @@ impl<V: Vector> Piece<V> {
             // A vertex is exact.
             FoldSide::Near | FoldSide::Far => zero,
         };
-        let rise = value - other_value + lead;
-        let step = if V::DIM == 2 {
-            scaled(e, rise / squared)
-        } else {
-            is_stiff_across(bend, e).then(|| between(bend, p, e, rise))?
-        };
+        let is_stiff = V::DIM == 2 || is_stiff_across(bend, e);
+        let step = is_stiff.then(|| between(bend, p, e, value - other_value + lead))?;
         turned(self.n, self.across, step)
     }
-}
 
-impl<V: Vector> Piece<V> {
     /// The unit vector on the way to the edge of a piece that has no bottom of its own, if [`step`](Self::step) and
     /// [`step_along_fold`](Self::step_along_fold) lead nowhere: to the fold with another piece, if there is one that is
     /// lower.
