@@ -91,6 +91,8 @@ pub(crate) struct Cores<'a, V: Vector> {
     error: V::Scalar,
     /// The same coordinate by coordinate; `None` as long as the length suffices.
     uncertainty: Option<Uncertainty<V>>,
+    /// What the offset of the origins has lost, if that is asked.
+    lost_in_offset: V,
     /// The second measurement of both bodies near contact.
     pub(super) near: Option<NearContact<V>>,
     /// The support points computed.
@@ -117,8 +119,19 @@ impl<'a, V: Vector> Cores<'a, V> {
         let radii = [pair.core_a.radius, pair.core_b.radius];
         let frame = Frame::new(&mut pair, offset, size);
         let error = error_of_points(&pair, size) * frame.per_unit + lost_to_underflow(frame.scale);
-        let (zero, size) = (Scalar::ZERO, size * frame.per_unit);
-        Self { pair, radii, frame, size, peeled_error: zero, error, uncertainty: None, near: None, iterations: 0 }
+        let (zero, lost_in_offset, size) = (Scalar::ZERO, V::ZERO, size * frame.per_unit);
+        Self {
+            pair,
+            radii,
+            frame,
+            size,
+            peeled_error: zero,
+            error,
+            uncertainty: None,
+            lost_in_offset,
+            near: None,
+            iterations: 0,
+        }
     }
 
     /// Gets the errors of the shapes' points, coordinate by coordinate, which takes longer than many a distance. For a
@@ -129,14 +142,10 @@ impl<'a, V: Vector> Cores<'a, V> {
         if self.uncertainty.is_some() || !self.error.is_finite() {
             return;
         }
-        let known = Uncertainty::new(&self.pair, self.frame.per_unit).of_sums(self.frame.offset);
-        self.uncertainty = Some(known.with(self.lost_in_offset().abs()));
-    }
-
-    /// What the offset of the origins has lost, in the unit.
-    fn lost_in_offset(&self) -> V {
-        let Pair { core_a, core_b, .. } = &self.pair;
-        lost_in_sum(core_a.origin, -core_b.origin) * self.frame.per_unit
+        let (Pair { core_a, core_b, .. }, Frame { offset, per_unit, .. }) = (&self.pair, self.frame);
+        self.lost_in_offset = lost_in_sum(core_a.origin, -core_b.origin) * per_unit;
+        let known = Uncertainty::new(&self.pair, per_unit).of_sums(offset);
+        self.uncertainty = Some(known.with(self.lost_in_offset.abs()));
     }
 
     /// Whether bodies whose cores are so far apart are nearer to contact than a few errors.
@@ -299,7 +308,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         // Computed in double precision, of edges and an offset that are wrong by what the shapes say.
         self.sharpen();
         let [of_a, of_b] = self.uncertainty.as_ref()?.of_shapes();
-        let error = of_a + of_b + self.lost_in_offset().norm();
+        // The length is right to a few ulps.
+        let error = of_a + of_b + self.lost_in_offset.norm() * Scalar::from_f64(1.01);
         let half_ulp = V::Scalar::EPSILON * Scalar::from_f64(0.5 * nearest.depth);
         let [depth, inner, outer] = [nearest.depth, nearest.inner, nearest.outer].map(Scalar::from_f64);
         let error = error + half_ulp;

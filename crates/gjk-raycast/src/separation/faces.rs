@@ -1,6 +1,5 @@
 //! The faces of a simplex of points of the difference, about which zero is or is not.
 
-use convex_support::numerics::elementary::hypot;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -70,12 +69,13 @@ impl<V: Vector> ProjectedFace<V> {
         }
         let height = |i: usize, j: usize| {
             let edge = way(at[i], at[j]);
-            symmetric::cross(at[i], at[j]) / hypot(edge.0, edge.1)
+            symmetric::cross(at[i], at[j]) / dot(edge, edge).sqrt()
         };
         let heights = [height(0, 1), height(1, 2), height(2, 0)];
         let most = heights.into_iter().fold(V::Scalar::neg_infinity(), V::Scalar::max);
         let least = heights.into_iter().fold(V::Scalar::infinity(), V::Scalar::min);
-        // If the corners are in clockwise order, all of these are negative.
+        // If the corners are in clockwise order, all of these are negative. Where the square of an edge underflows, the
+        // other two are as short as that edge.
         least.max(-most)
     }
 

@@ -3,7 +3,7 @@
 
 use core::array;
 
-use convex_support::numerics::bound::{roundings, roundings_of};
+use convex_support::numerics::bound::{raised, roundings, roundings_of};
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -98,7 +98,7 @@ pub(crate) fn look_after<V: Vector>(
             let rounded =
                 roundings_of(12.0, known.extent()) + roundings_of(4.0, frame.offset.abs() + V::splat(frame.radius));
             let (known, astray) = (known.with(rounded), astray * frame.per_unit);
-            let error = |u: V| known.along(u).min(frame.error + frame.noise) + astray;
+            let error = |u: V| raised(known.along(u)).min(frame.error + frame.noise) + astray;
             times = room_around_zero(faces_of_octahedron(&corners), error, |u| from.reach(u)) * frame.scale;
         }
     }

@@ -5,7 +5,7 @@
 //! vertical does not depend on its width. What a shape states of the length counts where that is less, as for a body
 //! that is turned.
 
-use convex_support::numerics::bound::{raised, raised_vector};
+use convex_support::numerics::bound::raised;
 use convex_support::{Rounding, Scalar, Vector};
 use num_traits::Float as _;
 
@@ -30,11 +30,12 @@ pub(crate) struct Uncertainty<V: Vector> {
 
 impl<V: Vector> Uncertainty<V> {
     /// What the shapes state, in the unit: of points that are added up without rounding.
+    #[inline]
     pub(super) fn new(pair: &AnyPair<'_, V>, per_unit: V::Scalar) -> Self {
         let in_unit = |stated: Rounding<V>, error_length: V::Scalar| Rounding {
             extent: stated.extent * per_unit,
-            error: raised_vector(stated.error * per_unit),
-            error_length: raised(stated.error_length.min(error_length) * per_unit),
+            error: stated.error * per_unit,
+            error_length: stated.error_length.min(error_length) * per_unit,
         };
         let [a, b] = pair.shapes.each().map(|shape| shape.rounding());
         Self { shapes: [in_unit(a, pair.core_a.error), in_unit(b, pair.core_b.error)], lost: V::ZERO }
@@ -76,12 +77,12 @@ impl<V: Vector> Uncertainty<V> {
     pub(crate) fn along(&self, n: V) -> V::Scalar {
         let n = n.abs();
         let of_shapes = self.shapes.iter().map(|shape| n.dot(shape.error).min(shape.error_length));
-        raised(of_shapes.fold(n.dot(self.lost), |sum, error| sum + error))
+        of_shapes.fold(n.dot(self.lost), |sum, error| sum + error)
     }
 
     /// A bound on the length of the error of a point.
     pub(crate) fn length(&self) -> V::Scalar {
-        raised(self.shapes[0].error_length + self.shapes[1].error_length + self.lost.norm())
+        self.shapes.iter().fold(self.lost.norm(), |sum, shape| sum + shape.error_length)
     }
 
     /// The parts of it that both shapes state.
