@@ -107,7 +107,7 @@ impl<V: Vector> MovingPair<'_, V> {
         let seen_before = ProjectedFace::along(near.normal, &before);
         let seen_after = ProjectedFace::along(near.normal, &after);
         // Between the two times no projected corner is farther than `moved` from where it was at the first.
-        let is_seen_within = seen_before.room() > moved;
+        let is_seen_within = seen_before.surrounds_zero(moved);
         let (height, lost) = seen_after.height_at_zero();
         // NaN is no proof.
         is_seen_within && near.gap > Scalar::ZERO && height < -(error + lost)

@@ -74,7 +74,7 @@ impl<V: Vector> MovingPair<'_, V> {
         // Points of segments are rounded by one product and one sum more than support points.
         let lost = V::Scalar::EPSILON * pair.extent();
         let known = placed.uncertainty();
-        let reached = || Some(length + known.beyond(v) - radius + slack(length, radius) + lost);
+        let reached = |along| Some(length + known.beyond_length(length, along) - radius + slack(length, radius) + lost);
         self.known_closely(&placed, &known, unit, (v, points), lower, reached)
     }
 
@@ -89,16 +89,17 @@ impl<V: Vector> MovingPair<'_, V> {
         unit: V,
         (v, points): (V, PointPair<V>),
         lower: V::Scalar,
-        upper: impl FnOnce() -> Option<V::Scalar>,
+        upper: impl FnOnce(V::Scalar) -> Option<V::Scalar>,
     ) -> Option<Instant<V>> {
         let radius = self.a.core.radius + self.b.core.radius;
-        let (distance, error) = (lower - radius, known.along(unit) + slack(lower, radius));
+        let along = known.along(unit);
+        let (distance, error) = (lower - radius, along + slack(lower, radius));
         // If a number is NaN, the points do not count as closest.
         if !(unit.dot(v) - lower <= error * Scalar::from_f64(IN_PLANE)) {
             return None;
         }
         let is_apart = distance > error;
-        let upper = if is_apart { Float::infinity() } else { upper()? };
+        let upper = if is_apart { Float::infinity() } else { upper(along)? };
         let is_known = is_apart || upper < Scalar::ZERO;
         is_known.then(|| Instant { upper, is_close: true, ..self.across(placed, unit, points, [distance, error]) })
     }
@@ -122,7 +123,7 @@ impl<V: Vector> MovingPair<'_, V> {
         let known = placed.uncertainty();
         let lower = unit.dot(pair.support(-unit).0 + placed.offset);
         self.count(1);
-        let reached = || self.overlap_of_corners(placed, &known, &face, unit);
+        let reached = |_| self.overlap_of_corners(placed, &known, &face, unit);
         self.known_closely(placed, &known, unit, (face.v, points), lower, reached)
     }
 

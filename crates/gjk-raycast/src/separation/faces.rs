@@ -52,31 +52,28 @@ pub(crate) struct ProjectedFace<V: Vector> {
 }
 
 impl<V: Vector> ProjectedFace<V> {
+    #[inline]
     pub(crate) fn along(n: V, points: &[V; MAX_POINTS]) -> Self {
         let [e, f] = axes_across(n);
         Self { at: points.map(|p| (e.dot(p), f.dot(p))), heights: points.map(|p| n.dot(p)) }
     }
 
-    /// The distance of zero from the boundary of the projection, if zero is within it; otherwise zero or less.
-    ///
-    /// Zero stays within the projection as long as no projected corner moves farther than that: to let zero out by a
-    /// side, the ends of that side would have to come towards it by at least that distance.
-    pub(crate) fn room(&self) -> V::Scalar {
+    /// Whether zero is within the projection, and stays there as long as no projected corner moves farther than `moved`:
+    /// to let zero out by a side, the ends of that side would have to come towards it by at least its distance.
+    #[inline]
+    pub(crate) fn surrounds_zero(&self, moved: V::Scalar) -> bool {
         let at = &self.at;
         if V::DIM == 2 {
             let (p, q) = (at[0].0, at[1].0);
-            return p.max(q).min(-p.min(q));
+            return p.min(q) < -moved && p.max(q) > moved;
         }
-        let height = |i: usize, j: usize| {
-            let edge = way(at[i], at[j]);
-            symmetric::cross(at[i], at[j]) / dot(edge, edge).sqrt()
-        };
-        let heights = [height(0, 1), height(1, 2), height(2, 0)];
-        let most = heights.into_iter().fold(V::Scalar::neg_infinity(), V::Scalar::max);
-        let least = heights.into_iter().fold(V::Scalar::infinity(), V::Scalar::min);
-        // If the corners are in clockwise order, all of these are negative. Where the square of an edge underflows, the
-        // other two are as short as that edge.
-        least.max(-most)
+        // The product of the distance and the side, and a bound on the side.
+        let sides = [[0, 1], [1, 2], [2, 0]].map(|[i, j]| {
+            let (x, y) = way(at[i], at[j]);
+            [symmetric::cross(at[i], at[j]), moved * (x.abs() + y.abs())]
+        });
+        // Of corners in clockwise order, all products are negative.
+        sides.iter().all(|[product, least]| product > least) || sides.iter().all(|[product, least]| -*product > *least)
     }
 
     /// The height at which the line through zero pierces the triangle or segment, and a bound on the rounding of this

@@ -431,7 +431,7 @@ impl<V: Vector> Known<V> {
     /// through zero certainly pierces: then no corner of the face is nearer along `n`.
     fn length_at_pierced(&self, state: &Gjk<V>, n: V) -> V::Scalar {
         let is_face = state.simplex.points().len() == V::DIM;
-        if !(is_face && ProjectedFace::along(n, state.simplex.padded().0).room() > self.error_of_corners()) {
+        if !(is_face && ProjectedFace::along(n, state.simplex.padded().0).surrounds_zero(self.error_of_corners())) {
             return Float::infinity();
         }
         // The face may be behind zero, which is outside all the same if the part beyond the face does not belong to the

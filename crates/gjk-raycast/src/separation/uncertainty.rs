@@ -5,7 +5,6 @@
 //! vertical does not depend on its width. What a shape states of the length counts where that is less, as for a body
 //! that is turned.
 
-use convex_support::numerics::bound::raised;
 use convex_support::{Rounding, Scalar, Vector};
 use num_traits::Float as _;
 
@@ -93,9 +92,14 @@ impl<V: Vector> Uncertainty<V> {
     /// By how much the exact point for a computed one may be farther from zero. Along its own direction it is as wrong
     /// as along any unit vector, and what it is wrong by across hardly adds to the length.
     pub(crate) fn beyond(&self, p: V) -> V::Scalar {
-        let across = self.length();
-        let along = p.unit().map_or(across, |u| self.along(u));
-        along + added_across(p.norm() + along, across)
+        let along = p.unit().map_or_else(|| self.length(), |u| self.along(u));
+        self.beyond_length(p.norm(), along)
+    }
+
+    /// The same for a point at this length, which is wrong by `along` in its own direction.
+    #[inline(always)]
+    pub(crate) fn beyond_length(&self, length: V::Scalar, along: V::Scalar) -> V::Scalar {
+        along + added_across(length + along, self.length())
     }
 }
 
@@ -114,8 +118,8 @@ pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
 /// `e²/(l + √(l² + e²))`, where the root is no less than either.
 #[inline(always)]
 fn added_across<S: Scalar>(length: S, error: S) -> S {
-    // If both are zero, the quotient is no number, and the error the minimum.
-    raised(error * (error / (length + length.max(error)))).min(error)
+    // Its own rounding. If both are zero, the quotient is no number, and the error the minimum.
+    (error * (error / (length + length.max(error))) * (S::ONE + S::EPSILON * S::from_f64(4.0))).min(error)
 }
 
 /// The rounding of a signed distance in the world's unit: unit vectors are so to 2ε, and the sum of the radii and the
