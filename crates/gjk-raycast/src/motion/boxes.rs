@@ -157,12 +157,12 @@ impl<V: Vector> MovingPair<'_, V> {
         self.count(1);
         let distance = normal.dot(corner + *offset);
         let uncertainty = placed.uncertainty();
-        let errors = uncertainty.of_shapes().map(Scalar::as_f64);
         let error = uncertainty.along(normal) + slack(distance, Scalar::ZERO);
         let mut upper = V::Scalar::infinity();
         // NaN proves nothing.
         if !(distance > error) {
             let epsilon = V::Scalar::EPSILON.as_f64();
+            let errors = [a, b].map(|body| body.rounding().error_length.as_f64());
             let leaning = boxes.leaning(facet, array(normal), errors, epsilon);
             upper = distance + error + Scalar::from_f64(leaning);
             if !(upper < Scalar::ZERO && boxes.is_pierced(facet, -distance.as_f64(), uncertainty.length().as_f64())) {

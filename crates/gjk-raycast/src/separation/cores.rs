@@ -307,9 +307,9 @@ impl<'a, V: Vector> Cores<'a, V> {
         let nearest = zonotope.nearest_facet::<V>()?;
         // Computed in double precision, of edges and an offset that are wrong by what the shapes say.
         self.sharpen();
-        let [of_a, of_b] = self.uncertainty.as_ref()?.of_shapes();
+        let stated = self.uncertainty.as_ref()?.stated_length;
         // The length is right to a few ulps.
-        let error = of_a + of_b + self.lost_in_offset.norm() * Scalar::from_f64(1.01);
+        let error = stated + self.lost_in_offset.norm() * Scalar::from_f64(1.01);
         let half_ulp = V::Scalar::EPSILON * Scalar::from_f64(0.5 * nearest.depth);
         let [depth, inner, outer] = [nearest.depth, nearest.inner, nearest.outer].map(Scalar::from_f64);
         let error = error + half_ulp;

@@ -255,7 +255,7 @@ impl<V: Vector> Known<V> {
     fn new(pair: &AnyPair<'_, V>, frame: &Frame<V>) -> Self {
         let lost = lost_in_sum(pair.core_a.origin, -pair.core_b.origin) * frame.per_unit;
         let points = Uncertainty::new(pair, frame.per_unit);
-        let extent = points.extent() + frame.offset.abs();
+        let extent = points.extent + frame.offset.abs();
         // A sum of up to 16 products is right to 17² quarters of ε² of its summands.
         let twice = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(1024.0);
         Self { frame: *frame, lost, extent, points: points.with(extent * twice) }
@@ -423,6 +423,7 @@ impl<V: Vector> Known<V> {
     }
 
     /// A bound on twice the error of the corners of a simplex, and a few roundings.
+    #[inline(never)]
     fn error_of_corners(&self) -> V::Scalar {
         self.points.length() * V::Scalar::from_f64(2.0) + roundings(16.0, self.extent.norm())
     }

@@ -96,7 +96,7 @@ pub(crate) fn look_after<V: Vector>(
             // offset one each; the offset loses 2, and the step to the surface 4.
             let known = Uncertainty::new(&pair, frame.per_unit);
             let rounded =
-                roundings_of(12.0, known.extent()) + roundings_of(4.0, frame.offset.abs() + V::splat(frame.radius));
+                roundings_of(12.0, known.extent) + roundings_of(4.0, frame.offset.abs() + V::splat(frame.radius));
             let (known, astray) = (known.with(rounded), astray * frame.per_unit);
             let error = |u: V| raised(known.along(u)).min(frame.error + frame.noise) + astray;
             times = room_around_zero(faces_of_octahedron(&corners), error, |u| from.reach(u)) * frame.scale;

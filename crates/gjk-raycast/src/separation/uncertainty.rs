@@ -21,37 +21,40 @@ const OFFSET: f64 = 2.1;
 /// A bound on the error of points of the difference of two cores, coordinate by coordinate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Uncertainty<V: Vector> {
-    /// What both shapes state.
-    shapes: [Rounding<V>; 2],
+    /// A bound on the coordinates of the sum of points of both shapes.
+    pub(super) extent: V,
+    /// What both shapes state, and its length.
+    stated: V,
+    pub(super) stated_length: V::Scalar,
     /// What rounding has lost besides.
     lost: V,
 }
 
 impl<V: Vector> Uncertainty<V> {
     /// What the shapes state, in the unit: of points that are added up without rounding.
-    #[inline]
     pub(super) fn new(pair: &AnyPair<'_, V>, per_unit: V::Scalar) -> Self {
-        let in_unit = |stated: Rounding<V>, error_length: V::Scalar| Rounding {
-            extent: stated.extent * per_unit,
-            error: stated.error * per_unit,
-            error_length: stated.error_length.min(error_length) * per_unit,
-        };
-        let [a, b] = pair.shapes.each().map(|shape| shape.rounding());
-        Self { shapes: [in_unit(a, pair.core_a.error), in_unit(b, pair.core_b.error)], lost: V::ZERO }
+        let Self { extent, stated, stated_length, lost } = Self::of(pair.shapes.each().map(|shape| shape.rounding()));
+        let stated_length = stated_length.min(pair.error()) * per_unit;
+        Self { extent: extent * per_unit, stated: stated * per_unit, stated_length, lost }
+    }
+
+    fn of([a, b]: [Rounding<V>; 2]) -> Self {
+        let (stated, stated_length) = (a.error + b.error, a.error_length + b.error_length);
+        Self { extent: a.extent + b.extent, stated, stated_length, lost: V::ZERO }
     }
 
     /// For the sum of two points, each rounded to the shapes' extents, and an exact offset of their origins; in the
     /// world's unit.
     #[inline(always)]
     pub(crate) fn of_exact_offset(shapes: [Rounding<V>; 2], offset: V) -> Self {
-        Self { shapes, lost: V::ZERO }.of_sums(offset)
+        Self::of(shapes).of_sums(offset)
     }
 
     /// The same where each point is added up in the vectors' own precision, with an exact offset.
     #[inline(always)]
     pub(super) fn of_sums(self, offset: V) -> Self {
         let [sum, of_offset] = [SUM, OFFSET].map(|units| V::Scalar::EPSILON * Scalar::from_f64(units));
-        self.with(self.extent() * sum + offset.abs() * of_offset)
+        self.with(self.extent * sum + offset.abs() * of_offset)
     }
 
     /// The same where so much more is lost.
@@ -60,37 +63,27 @@ impl<V: Vector> Uncertainty<V> {
         Self { lost: self.lost + lost, ..self }
     }
 
-    /// A bound on the coordinates of the sum of points of both shapes.
-    pub(super) fn extent(&self) -> V {
-        self.shapes[0].extent + self.shapes[1].extent
-    }
-
     /// Whether what the shapes state is much less along one axis than along another.
     pub(super) fn is_uneven(&self) -> bool {
-        let stated = self.shapes[0].error + self.shapes[1].error;
-        stated.min_element() * V::Scalar::from_f64(4.0) < stated.max_element()
+        self.stated.min_element() * V::Scalar::from_f64(4.0) < self.stated.max_element()
     }
 
     /// A bound on the error of `n·p` for a unit vector `n` and a point `p`.
     #[inline]
     pub(crate) fn along(&self, n: V) -> V::Scalar {
         let n = n.abs();
-        let of_shapes = self.shapes.iter().map(|shape| n.dot(shape.error).min(shape.error_length));
-        of_shapes.fold(n.dot(self.lost), |sum, error| sum + error)
+        n.dot(self.stated).min(self.stated_length) + n.dot(self.lost)
     }
 
     /// A bound on the length of the error of a point.
+    #[inline(never)]
     pub(crate) fn length(&self) -> V::Scalar {
-        self.shapes.iter().fold(self.lost.norm(), |sum, shape| sum + shape.error_length)
-    }
-
-    /// The parts of it that both shapes state.
-    pub(crate) fn of_shapes(&self) -> [V::Scalar; 2] {
-        self.shapes.map(|shape| shape.error_length)
+        self.stated_length + self.lost.norm()
     }
 
     /// By how much the exact point for a computed one may be farther from zero. Along its own direction it is as wrong
     /// as along any unit vector, and what it is wrong by across hardly adds to the length.
+    #[inline(never)]
     pub(crate) fn beyond(&self, p: V) -> V::Scalar {
         let along = p.unit().map_or_else(|| self.length(), |u| self.along(u));
         self.beyond_length(p.norm(), along)
