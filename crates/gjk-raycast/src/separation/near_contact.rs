@@ -245,10 +245,10 @@ struct Known<V: Vector> {
     frame: Frame<V>,
     /// The rounding of the offset, which is added.
     lost: V,
-    /// A bound on the coordinates of all that is added up.
-    extent: V,
     /// The error of points that are added up in twice the precision, except for one rounding of the sum.
     points: Uncertainty<V>,
+    /// A bound on twice the error of the corners of a simplex, and a few roundings.
+    error_of_corners: V::Scalar,
 }
 
 impl<V: Vector> Known<V> {
@@ -258,7 +258,9 @@ impl<V: Vector> Known<V> {
         let extent = points.extent + frame.offset.abs();
         // A sum of up to 16 products is right to 17² quarters of ε² of its summands.
         let twice = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(1024.0);
-        Self { frame: *frame, lost, extent, points: points.with(extent * twice) }
+        let points = points.with(extent * twice);
+        let error_of_corners = points.length() * V::Scalar::from_f64(2.0) + roundings(16.0, extent.norm());
+        Self { frame: *frame, lost, points, error_of_corners }
     }
 
     /// `n·(a − b + offset)`, rounded once: the products are added up in twice the precision.
@@ -303,7 +305,7 @@ impl<V: Vector> Known<V> {
             None => begin(pair, frame, size, max_iterations),
         };
         state.ensure_measured();
-        if is_around_zero(state.simplex.points(), self.error_of_corners()) {
+        if is_around_zero(state.simplex.points(), self.error_of_corners) {
             return Some(overlapping(&state, frame));
         }
         let seen = |state: &Gjk<V>, end, found| {
@@ -321,7 +323,7 @@ impl<V: Vector> Known<V> {
         }
         let begun = state;
         let end = go_on(&mut state, pair, frame, max_iterations);
-        if is_around_zero(state.simplex.points(), self.error_of_corners()) {
+        if is_around_zero(state.simplex.points(), self.error_of_corners) {
             return Some(overlapping(&state, frame));
         }
         let mut best = self.best_plane(pair, &state);
@@ -380,7 +382,7 @@ impl<V: Vector> Known<V> {
     fn may_be_beyond(&self, n: V, points: &[V], level: V::Scalar) -> bool {
         let nearest = points.iter().map(|p| n.dot(*p)).fold(V::Scalar::infinity(), V::Scalar::min);
         // NaN may be.
-        n != V::ZERO && !(nearest < (level - self.error_of_corners()) * n.length())
+        n != V::ZERO && !(nearest < (level - self.error_of_corners) * n.length())
     }
 
     /// The plane across `n` that supports the difference.
@@ -422,17 +424,11 @@ impl<V: Vector> Known<V> {
         if length.is_finite() { length } else { Float::infinity() }
     }
 
-    /// A bound on twice the error of the corners of a simplex, and a few roundings.
-    #[inline(never)]
-    fn error_of_corners(&self) -> V::Scalar {
-        self.points.length() * V::Scalar::from_f64(2.0) + roundings(16.0, self.extent.norm())
-    }
-
     /// A bound on the distance of the bodies from a face of the difference that the line along the unit vector `n`
     /// through zero certainly pierces: then no corner of the face is nearer along `n`.
     fn length_at_pierced(&self, state: &Gjk<V>, n: V) -> V::Scalar {
         let is_face = state.simplex.points().len() == V::DIM;
-        if !(is_face && ProjectedFace::along(n, state.simplex.padded().0).surrounds_zero(self.error_of_corners())) {
+        if !(is_face && ProjectedFace::along(n, state.simplex.padded().0).surrounds_zero(self.error_of_corners)) {
             return Float::infinity();
         }
         // The face may be behind zero, which is outside all the same if the part beyond the face does not belong to the
