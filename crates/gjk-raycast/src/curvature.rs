@@ -32,19 +32,21 @@ pub(crate) fn share_of_second<S: Scalar>(p: Across<S>, e: Across<S>) -> S {
     (-dot(e, p) / dot(e, e)).max(S::ZERO).min(S::ONE)
 }
 
-/// The `δ` with `e·δ = g` and `e⊥·(P + H·δ) = 0`: `δ = (g/e²)·e + s·e⊥`, `s = −e⊥·(P + (g/e²)·H·e) / e⊥·H·e⊥`.
+/// The `δ` with `e·δ = g` and `e⊥·(P + H·δ) = 0`: `δ = (g/e²)·e + s·e⊥`, `s = −e⊥·(P + (g/e²)·H·e) / e⊥·H·e⊥`. In the
+/// plane there is nothing across `e`.
 pub(crate) fn between<S: Scalar>(h: Symmetric<S>, p: Across<S>, e: Across<S>, g: S) -> Across<S> {
     let across = turned_left(e);
     let pulled = h.times(across);
     let t = g / dot(e, e);
-    let s = -(dot(across, p) + t * dot(e, pulled)) / dot(across, pulled);
+    let (left, stiffness) = (dot(across, p) + t * dot(e, pulled), dot(across, pulled));
+    let s = if left == S::ZERO { left } else { -left / stiffness };
     (e.0 * t + across.0 * s, e.1 * t + across.1 * s)
 }
 
 /// Whether the part of `H` across `e` is more than rounding for [`between`].
 pub(crate) fn is_stiff_across<S: Scalar>(h: Symmetric<S>, e: Across<S>) -> bool {
     let across = turned_left(e);
-    dot(across, h.times(across)) > S::EPSILON.sqrt() * dot(e, e) * (h.a + h.d)
+    dot(across, h.times(across)) > S::EPSILON.sqrt() * dot(e, e) * (h.a + h.d).abs()
 }
 
 /// The Hessian of a body swept by a ball, across an axis, at the normal whose part across it is given and whose squared

@@ -18,7 +18,7 @@ pub(crate) struct Clipped<S> {
 /// An edge of the overlap: one of the clipped outline, by the numbers of its ends, or the edge of the other outline
 /// with this index.
 #[derive(Clone, Copy, Debug)]
-enum Edge {
+pub(crate) enum Edge {
     Own(u32, u32),
     Other(usize),
 }
@@ -27,33 +27,28 @@ pub(crate) type ClippedCorners<S> = SmallVec<[Clipped<S>; ROOM]>;
 
 /// The overlap of two outlines by the method of Sutherland and Hodgman: the first is cut along each edge of the second.
 /// A segment is clipped by a polygon, and two parallel segments by each other. It is empty if there is none. An outline
-/// without corners is the whole plane. Both lists are empty at first; they are large, and the overlap is one of them.
-pub(crate) fn clip<'l, S: Scalar>(
-    own: &Outline<S>,
-    other: &Outline<S>,
-    [overlap, rest]: &'l mut [ClippedCorners<S>; 2],
-) -> &'l [Clipped<S>] {
-    overlap.extend(corners_of(&own.corners));
-    let mut overlap = [overlap, rest];
-    let count = other.corners.len();
-    if count == 2 {
-        let [from, to] = [other.corners[0], other.corners[1]];
-        let e = way(from.at, to.at);
-        let across = way(own.corners[0].at, own.corners[own.corners.len() - 1].at);
-        if own.corners.len() > 2 || !are_parallel(e, across) {
-            return &[];
+/// without corners is the whole plane. A point no farther than `slack` from a line is on both sides of it. Both lists
+/// are empty at first; they are large, and the overlap is the first of them afterwards.
+pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>, slack: S, lists: &mut [&mut ClippedCorners<S>; 2]) {
+    lists[0].extend(corners_of(&own.corners));
+    let corners = &other.corners;
+    let is_segment = corners.len() == 2;
+    if is_segment {
+        let [e, f] = [corners, &own.corners].map(|ends| way(ends[0].at, ends[ends.len() - 1].at));
+        if own.corners.len() > 2 || !are_parallel(e, f) {
+            lists[0].clear();
         }
-        cut(&mut overlap, 0, ContactPart::Vertex(from.id), |at| dot(way(from.at, at), e), other);
-        cut(&mut overlap, 1, ContactPart::Vertex(to.id), |at| dot(way(at, to.at), e), other);
-        return overlap[0];
     }
-    for i in 0..count {
-        let [from, to] = [other.corners[i], other.corners[(i + 1) % count]];
+    for (i, from) in corners.iter().enumerate() {
+        let to = corners[(i + 1) % corners.len()];
         let e = way(from.at, to.at);
-        let part = ContactPart::Edge(from.id, to.id);
-        cut(&mut overlap, i, part, |at| cross(e, way(from.at, at)), other);
+        let along = if is_segment { ContactPart::Vertex(from.id) } else { ContactPart::Edge(from.id, to.id) };
+        let inside = |at| if is_segment { dot(e, way(from.at, at)) } else { cross(e, way(from.at, at)) };
+        cut(lists, i, slack * dot(e, e).sqrt(), inside, |edge| match edge {
+            Edge::Own(p, q) => [ContactPart::Edge(p, q), along],
+            Edge::Other(before) => [ContactPart::Face, ContactPart::Vertex(shared_corner(before, i, other))],
+        });
     }
-    overlap[0]
 }
 
 /// Whether segments are parallel to within about a degree.
@@ -71,19 +66,20 @@ fn corners_of<S: Scalar>(corners: &[Corner<S>]) -> impl Iterator<Item = Clipped<
     corners.iter().zip(corners.iter().cycle().skip(1)).map(corner)
 }
 
-/// Keeps the part of a polygon or a segment, the first of two lists, in which `inside` is not negative. The cut is
-/// along the part `along` of the other outline, which is its edge of index `index`.
-fn cut<S: Scalar>(
+/// Keeps the part of a polygon or a segment, the first of two lists, in which `inside` is not less than `-slack`. The
+/// cut is along the edge of index `index` of the other outline, and `parts` tells what its crossing with an edge is on.
+pub(crate) fn cut<S: Scalar>(
     lists: &mut [&mut ClippedCorners<S>; 2],
     index: usize,
-    along: ContactPart,
+    slack: S,
     inside: impl Fn(Across<S>) -> S,
-    other: &Outline<S>,
+    parts: impl Fn(Edge) -> [ContactPart; 2],
 ) {
     let [polygon, kept] = lists;
     let polygon = polygon.as_slice();
+    let is_in = |d: S| d >= -slack;
     // Most edges of a large face cut nothing.
-    if polygon.iter().all(|corner| inside(corner.at) >= S::ZERO) {
+    if polygon.iter().all(|corner| is_in(inside(corner.at))) {
         return;
     }
     kept.clear();
@@ -93,18 +89,15 @@ fn cut<S: Scalar>(
     for (i, from) in polygon.iter().enumerate() {
         let to = polygon.get(i + 1).unwrap_or(first);
         let e = inside(to.at);
-        let is_crossed = (d >= S::ZERO) != (e >= S::ZERO) && !(is_segment && i == 1);
-        if d >= S::ZERO {
+        if is_in(d) {
             kept.push(*from);
         }
-        if is_crossed {
-            let at = sum(from.at, scaled(way(from.at, to.at), d / (d - e)));
-            let parts = match from.edge {
-                Edge::Own(p, q) => [ContactPart::Edge(p, q), along],
-                Edge::Other(before) => [ContactPart::Face, ContactPart::Vertex(shared_corner(before, index, other))],
-            };
-            let edge = if d >= S::ZERO { Edge::Other(index) } else { from.edge };
-            kept.push(Clipped { at, parts, edge });
+        if is_in(d) != is_in(e) && !(is_segment && i == 1) {
+            // Between two points of which one is outside by no more than the slack, the line need not be crossed.
+            let share = (d / (d - e)).max(S::ZERO).min(S::ONE);
+            let at = sum(from.at, scaled(way(from.at, to.at), share));
+            let edge = if is_in(d) { Edge::Other(index) } else { from.edge };
+            kept.push(Clipped { at, parts: parts(from.edge), edge });
         }
         d = e;
     }

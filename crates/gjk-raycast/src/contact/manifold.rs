@@ -196,8 +196,9 @@ impl<V: Vector> Facing<'_, V> {
         // A segment is clipped by a polygon.
         let is_swapped = a > b && b > 0;
         let [own, other] = if is_swapped { [of_b, of_a] } else { [of_a, of_b] };
-        let mut lists = [ClippedCorners::new(), ClippedCorners::new()];
-        let overlap = clip(&own.outline, &other.outline, &mut lists);
+        let mut lists = [&mut ClippedCorners::new(), &mut ClippedCorners::new()];
+        clip(&own.outline, &other.outline, Scalar::ZERO, &mut lists);
+        let overlap = lists[0].as_slice();
         for (i, corner) in overlap.iter().enumerate() {
             let [own, other] = corner.parts;
             let parts = self.settled(corner.at, if is_swapped { [other, own] } else { [own, other] });

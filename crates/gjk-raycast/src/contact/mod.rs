@@ -11,9 +11,10 @@ use convex_support::{SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::{SignedDistanceOptions, signed_distance};
+pub(crate) use clip::{ClippedCorners, clip, cut};
 use manifold::manifold;
 pub(crate) use manifold::manifold_over_plane;
-pub(crate) use outline::{ContactPlane, Corner, Ellipse, Outline};
+pub(crate) use outline::{ContactPart, ContactPlane, Corner, Ellipse, Outline};
 pub use result::{Contact, ContactPoint};
 pub(crate) use surface::Level;
 

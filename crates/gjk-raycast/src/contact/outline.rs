@@ -2,10 +2,11 @@
 
 use core::cmp::Ordering;
 
+use convex_support::numerics::twofold::dot_minus;
 use convex_support::{Feature, Rim, Scalar, Vector};
 use smallvec::SmallVec;
 
-use crate::symmetric::{Across, cross, dot, way};
+use crate::symmetric::{Across, cross, dot, scaled, way};
 
 /// The corners that two features of 16 points may have in common. There is room for them without an allocation.
 pub(crate) const ROOM: usize = 32;
@@ -107,29 +108,58 @@ impl<S: Scalar> Outline<S> {
         wrap(&mut points, S::ZERO, &mut self.corners);
     }
 
-    /// The height at a place of the plane through the three corners that span most; linear along a segment.
-    pub(crate) fn height(&self, at: Across<S>) -> S {
-        let first = self.corners[0];
-        let edge = |c: &Corner<S>| way(first.at, c.at);
-        let to = way(first.at, at);
-        let mut most = (S::ZERO, first.height);
-        for pair in self.corners[1..].windows(2) {
-            let [p, q] = [edge(&pair[0]), edge(&pair[1])];
-            let area = cross(p, q);
-            if area > most.0 {
-                let (along_p, along_q) = (cross(to, q) / area, cross(p, to) / area);
-                let rise = (pair[0].height - first.height) * along_p + (pair[1].height - first.height) * along_q;
-                most = (area, first.height + rise);
-            }
-        }
-        match self.corners.as_slice() {
-            [_, second] => {
-                let e = edge(second);
-                first.height + (second.height - first.height) * (dot(to, e) / dot(e, e))
-            }
-            _ => most.1,
+    /// The plane of the feature over the plane of contact, through the three corners that span most.
+    pub(crate) fn tangent(&self) -> Tangent<S> {
+        let corners = &self.corners;
+        let spanned = |i: &usize| cross(way(corners[0].at, corners[*i].at), way(corners[0].at, corners[i + 1].at));
+        let by_area = |i: &usize, k: &usize| spanned(i).partial_cmp(&spanned(k)).unwrap_or(Ordering::Equal);
+        match (1..corners.len() - 1).max_by(by_area) {
+            Some(i) => Tangent::through(&[corners[0], corners[i], corners[i + 1]]),
+            None => Tangent::through(corners),
         }
     }
+}
+
+/// A plane over the plane of contact.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tangent<S> {
+    pub(super) at: Across<S>,
+    pub(super) level: S,
+    /// How fast it rises.
+    pub(crate) gradient: Across<S>,
+}
+
+impl<S: Scalar> Tangent<S> {
+    /// Through three corners; through two, level across the line between them.
+    pub(super) fn through(corners: &[Corner<S>]) -> Self {
+        let first = corners[0];
+        let edge = |i: usize| {
+            let corner: Corner<S> = corners[i];
+            (way(first.at, corner.at), corner.height - first.height)
+        };
+        let (p, rise) = edge(1);
+        let gradient = if corners.len() == 2 {
+            scaled(p, rise / dot(p, p))
+        } else {
+            let (q, other) = edge(2);
+            let area = spanned(p, q);
+            (spanned((rise, p.1), (other, q.1)) / area, spanned((p.0, rise), (q.0, other)) / area)
+        };
+        Self { at: first.at, level: first.height, gradient }
+    }
+
+    pub(super) fn level(&self, at: Across<S>) -> S {
+        self.level + dot(self.gradient, way(self.at, at))
+    }
+}
+
+/// The area between two vectors, in twice the precision if the products cancel. The points around a place on a curved
+/// surface end as thin triangles, two corners near one another and the third far away. Rounded products of such an area
+/// keep only the digits above the rounding of the long sides.
+pub(super) fn spanned<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
+    let (p, q) = (a.0 * b.1, a.1 * b.0);
+    let cancels = (p - q).abs() * S::from_f64(16.0) < p.abs() + q.abs();
+    if cancels { dot_minus([(a.0, b.1), (-a.1, b.0)], S::ZERO) } else { p - q }
 }
 
 /// How long a vector is, to a factor of √2.

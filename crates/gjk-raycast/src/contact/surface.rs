@@ -1,11 +1,11 @@
 //! The height of the surface of a shape over a place in the plane of contact.
 
-use convex_support::numerics::twofold::dot_minus;
 use convex_support::{CertainCrossing, Core, Feature, Hint, LineQuery, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
-use super::outline::{ContactPlane, Corner, Outline, spread, wrap};
+use super::outline::{ContactPlane, Corner, Outline, Tangent, spanned, spread, wrap};
+use crate::curvature::share_of_second;
 use crate::symmetric::{Across, cross, dot, way};
 
 /// A measured length along a normal, or a speed along it, and a bound on its error.
@@ -60,40 +60,6 @@ impl<S: SupportMap + ?Sized> Surface<S::Vector> for &S {
 
     fn crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
         self.certain_crossing(line)
-    }
-}
-
-/// A plane over the plane of contact.
-#[derive(Clone, Copy, Debug)]
-struct Tangent<S> {
-    at: Across<S>,
-    level: S,
-    /// How fast it rises.
-    gradient: Across<S>,
-}
-
-impl<S: Scalar> Tangent<S> {
-    /// Through three corners; through two, level across the line between them.
-    fn through(corners: &[Corner<S>]) -> Self {
-        let first = corners[0];
-        let edge = |i: usize| {
-            let corner: Corner<S> = corners[i];
-            (way(first.at, corner.at), corner.height - first.height)
-        };
-        let (p, rise) = edge(1);
-        let gradient = if corners.len() == 2 {
-            let steep = rise / dot(p, p);
-            (p.0 * steep, p.1 * steep)
-        } else {
-            let (q, other) = edge(2);
-            let area = spanned(p, q);
-            (spanned((rise, p.1), (other, q.1)) / area, spanned((p.0, rise), (q.0, other)) / area)
-        };
-        Self { at: first.at, level: first.height, gradient }
-    }
-
-    fn level(&self, at: Across<S>) -> S {
-        self.level + dot(self.gradient, way(self.at, at))
     }
 }
 
@@ -174,12 +140,10 @@ impl<'s, V: Vector> Side<'s, V> {
     /// levels of all places.
     pub(super) fn flatten(&mut self) {
         let corners = &self.outline.corners;
-        let n = corners.len();
-        let tangent = match n {
-            0 | 1 => return,
-            2 => Tangent::through(corners),
-            _ => Tangent::through(&[corners[0], corners[n / 3], corners[2 * n / 3]]),
-        };
+        if corners.len() < 2 {
+            return;
+        }
+        let tangent = self.outline.tangent();
         let allowed = self.rounding(&tangent);
         let is_in = |corner: &Corner<V::Scalar>| (corner.height - tangent.level(corner.at)).abs() <= allowed;
         if corners.iter().all(is_in) && self.beyond(&tangent).is_some_and(|(_, by)| by <= allowed) {
@@ -341,7 +305,7 @@ fn between<S: Scalar>(corners: &[Corner<S>], at: Across<S>) -> S {
     let to = |i: usize| way(at, corners[i].at);
     let of_edge = |i: usize, j: usize| {
         let e = way(to(i), to(j));
-        let share = (-dot(e, to(i)) / dot(e, e)).max(S::ZERO).min(S::ONE);
+        let share = share_of_second(to(i), e);
         let (x, y) = (to(i).0 + e.0 * share, to(i).1 + e.1 * share);
         (dot((x, y), (x, y)), corners[i].height + (corners[j].height - corners[i].height) * share)
     };
@@ -355,15 +319,6 @@ fn between<S: Scalar>(corners: &[Corner<S>], at: Across<S>) -> S {
     }
     let [p, q, r] = [0, 1, 2].map(|i| corners[i].height * weights[i]);
     (p + q + r) / (weights[0] + weights[1] + weights[2])
-}
-
-/// The area between two vectors, in twice the precision if the products cancel. The points around a place on a curved
-/// surface end as thin triangles, two corners near one another and the third far away. Rounded products of such an area
-/// keep only the digits above the rounding of the long sides.
-fn spanned<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
-    let (p, q) = (a.0 * b.1, a.1 * b.0);
-    let cancels = (p - q).abs() * S::from_f64(16.0) < p.abs() + q.abs();
-    if cancels { dot_minus([(a.0, b.1), (-a.1, b.0)], S::ZERO) } else { p - q }
 }
 
 /// Whether a point is behind another one, beyond a side of the shape steeper than [`STEEP`].

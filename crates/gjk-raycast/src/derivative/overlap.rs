@@ -8,82 +8,47 @@ use convex_support::Scalar;
 use convex_support::numerics::elementary::hypot;
 use smallvec::SmallVec;
 
-use crate::contact::{Corner, Ellipse, Outline};
-use crate::symmetric::{Across, cross, direction, dot, scaled, sum, way};
+use crate::contact::{ClippedCorners, ContactPart, Corner, Ellipse, Outline, clip, cut};
+use crate::symmetric::{Across, cross, direction, dot, scaled, way};
 
 /// The most tangents along which discs are cut. Each halves the angle in which the least value lies, so that its error
 /// falls to a quarter.
 const MAX_CUTS: usize = 48;
 
-/// The overlap of two features: a convex polygon, a segment or a point, and the rims of discs by which it is cut.
-#[derive(Clone, Debug)]
-pub(super) struct Overlap<S: Scalar> {
-    corners: SmallVec<[Across<S>; 32]>,
-    rims: [Option<Ellipse<S>>; 2],
-    /// A point no farther than this from a line is on it.
+/// The least value over the overlap of two features, neither of them a vertex, and not edges that cross, of a function
+/// whose minimum over any polygon is at a corner, as for a linear one and a quotient of two; `None` if there is no
+/// corner. A point no farther than `slack` from a line is on it.
+pub(super) fn least_over_overlap<S: Scalar>(
+    [a, b]: &[Outline<S>; 2],
     slack: S,
+    value: impl Fn(Across<S>) -> S,
+) -> Option<S> {
+    // A segment is cut by a polygon.
+    let (own, other) = if a.corners.len() > b.corners.len() { (b, a) } else { (a, b) };
+    let mut lists = [&mut ClippedCorners::new(), &mut ClippedCorners::new()];
+    clip(&around(own), &around(other), slack, &mut lists);
+    let least_corner = |corners: &ClippedCorners<S>| {
+        let values = corners.iter().map(|corner| (corner.at, value(corner.at)));
+        values.reduce(|least, other| if other.1 < least.1 { other } else { least })
+    };
+    let rims = [own.rim, other.rim];
+    for _ in 0..MAX_CUTS {
+        let (at, least) = least_corner(lists[0])?;
+        let outside = rims.iter().flatten().find_map(|rim| tangent(rim, at, slack).map(|q| (*rim, q)));
+        let Some((rim, q)) = outside else { return Some(least) };
+        let radius = mean_radius(&rim);
+        let inside = |at| (S::ONE - dot(of_circle(&rim, at), q)) * radius;
+        cut(&mut lists, 0, slack, inside, |_| [ContactPart::Face; 2]);
+    }
+    least_corner(lists[0]).map(|(_, least)| least)
 }
 
-impl<S: Scalar> Overlap<S> {
-    /// The overlap of two features, neither of them a vertex, and not edges that cross.
-    pub(super) fn of([a, b]: &[Outline<S>; 2], slack: S) -> Self {
-        // A segment is cut by a polygon.
-        let (own, other) = if a.corners.len() > b.corners.len() { (b, a) } else { (a, b) };
-        let mut overlap = Self { corners: around(own), rims: [own.rim, other.rim], slack };
-        let sides = around(other);
-        if let [from, to] = sides[..] {
-            let e = direction(from, to);
-            overlap.cut(|at| dot(way(from, at), e));
-            overlap.cut(|at| dot(way(at, to), e));
-        } else {
-            for (i, &from) in sides.iter().enumerate() {
-                let e = direction(from, sides[(i + 1) % sides.len()]);
-                overlap.cut(|at| cross(e, way(from, at)));
-            }
-        }
-        overlap
-    }
-
-    /// The least value of a function whose minimum over any polygon is at a corner, as for a linear one and a quotient
-    /// of two; `None` if there is no corner.
-    pub(super) fn least(mut self, value: impl Fn(Across<S>) -> S) -> Option<S> {
-        for _ in 0..MAX_CUTS {
-            let (at, least) = self.least_corner(&value)?;
-            let outside = self.rims.iter().flatten().find_map(|rim| self.tangent(rim, at).map(|q| (*rim, q)));
-            let Some((rim, q)) = outside else { return Some(least) };
-            let radius = mean_radius(&rim);
-            self.cut(|at| (S::ONE - dot(of_circle(&rim, at), q)) * radius);
-        }
-        self.least_corner(&value).map(|(_, least)| least)
-    }
-
-    fn least_corner(&self, value: impl Fn(Across<S>) -> S) -> Option<(Across<S>, S)> {
-        let values = self.corners.iter().map(|&at| (at, value(at)));
-        values.reduce(|least, other| if other.1 < least.1 { other } else { least })
-    }
-
-    /// If a point is outside an ellipse, the unit vector to it, in coordinates in which the ellipse is the unit circle.
-    fn tangent(&self, rim: &Ellipse<S>, at: Across<S>) -> Option<Across<S>> {
-        let p = of_circle(rim, at);
-        let length = dot(p, p).sqrt();
-        let is_outside = (length - S::ONE) * mean_radius(rim) > self.slack;
-        is_outside.then(|| (p.0 / length, p.1 / length))
-    }
-
-    /// Keeps the part on one side of a line, by the signed distance from it.
-    fn cut(&mut self, inside: impl Fn(Across<S>) -> S) {
-        let corners = core::mem::take(&mut self.corners);
-        for (i, &from) in corners.iter().enumerate() {
-            let to = corners[(i + 1) % corners.len()];
-            let (d, e) = (inside(from), inside(to));
-            if d >= -self.slack {
-                self.corners.push(from);
-            }
-            if d.min(e) < -self.slack && d.max(e) > self.slack {
-                self.corners.push(sum(from, scaled(way(from, to), d / (d - e))));
-            }
-        }
-    }
+/// If a point is outside an ellipse, the unit vector to it, in coordinates in which the ellipse is the unit circle.
+fn tangent<S: Scalar>(rim: &Ellipse<S>, at: Across<S>, slack: S) -> Option<Across<S>> {
+    let p = of_circle(rim, at);
+    let length = dot(p, p).sqrt();
+    let is_outside = (length - S::ONE) * mean_radius(rim) > slack;
+    is_outside.then(|| (p.0 / length, p.1 / length))
 }
 
 /// The directions, as unit vectors, along which two features only touch, or are apart. The normal could turn in these
@@ -139,14 +104,16 @@ fn range<S: Scalar>(outline: &Outline<S>, u: Across<S>) -> [S; 2] {
     outline.corners.iter().map(along).fold([S::infinity(), -S::infinity()], |[low, high], x| [low.min(x), high.max(x)])
 }
 
-/// The corners of a feature, or of a parallelogram around a disc; counterclockwise.
-fn around<S: Scalar>(outline: &Outline<S>) -> SmallVec<[Across<S>; 32]> {
-    let Some(Ellipse { center, radii: [p, q] }) = outline.rim else {
-        return outline.corners.iter().map(|corner| corner.at).collect();
-    };
+/// The outline of a feature, or a parallelogram around a disc; counterclockwise.
+fn around<S: Scalar>(outline: &Outline<S>) -> Outline<S> {
+    let Some(Ellipse { center, radii: [p, q] }) = outline.rim else { return outline.clone() };
     let (p, q) = if cross(p, q) < S::ZERO { (q, p) } else { (p, q) };
     let signs = [(S::ONE, S::ONE), (-S::ONE, S::ONE), (-S::ONE, -S::ONE), (S::ONE, -S::ONE)];
-    signs.into_iter().map(|(i, j)| (center.0 + p.0 * i + q.0 * j, center.1 + p.1 * i + q.1 * j)).collect()
+    let corner = |(i, j)| {
+        let at = (center.0 + p.0 * i + q.0 * j, center.1 + p.1 * i + q.1 * j);
+        Corner { at, height: S::ZERO, id: 0 }
+    };
+    Outline { corners: signs.into_iter().map(corner).collect(), ..Outline::empty() }
 }
 
 /// The coordinates of a point in which an ellipse is the unit circle.
@@ -188,16 +155,7 @@ impl<S: Scalar> Span<S> {
 
     /// The turn of the normal that makes it exactly across the feature, if that is an edge or a face.
     pub(super) fn turn(self, outline: &Outline<S>) -> Across<S> {
-        let zero = (S::ZERO, S::ZERO);
-        let slope = |e: Across<S>| {
-            let first = outline.corners[0].at;
-            outline.height(sum(first, e)) - outline.height(first)
-        };
-        match self {
-            Self::Vertex => zero,
-            Self::Edge(e) => scaled(e, -slope(e)),
-            Self::Face => (-slope((S::ONE, S::ZERO)), -slope((S::ZERO, S::ONE))),
-        }
+        if self == Self::Vertex { (S::ZERO, S::ZERO) } else { scaled(outline.tangent().gradient, -S::ONE) }
     }
 }
 

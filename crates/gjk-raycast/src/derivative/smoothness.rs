@@ -5,7 +5,7 @@ use num_traits::Float as _;
 
 use super::ClosestFeatures;
 use super::gradient::start_of;
-use super::overlap::{DifferenceSpan, Overlap, Span, separating};
+use super::overlap::{DifferenceSpan, Span, least_over_overlap, separating};
 use crate::symmetric::{Across, dot, turned_left};
 use crate::{RigidMotion, Trajectory};
 
@@ -154,7 +154,7 @@ impl<V: Vector> ClosestFeatures<V> {
             return value(self.points[0] * half + self.points[1] * half);
         }
         let place = |at| self.middle + self.out_of_plane(at) * self.unit;
-        let overlap = Overlap::of(&self.outlines, self.slack());
-        overlap.least(|at| value(place(at))).unwrap_or_else(|| value(self.middle))
+        let least = least_over_overlap(&self.outlines, self.slack(), |at| value(place(at)));
+        least.unwrap_or_else(|| value(self.middle))
     }
 }

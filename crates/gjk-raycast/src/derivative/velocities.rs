@@ -23,7 +23,8 @@ use num_traits::Float as _;
 
 use super::ClosestFeatures;
 use super::overlap::DifferenceSpan;
-use crate::symmetric::{Across, Symmetric, cross, dot, scaled, sum, turned_left, way};
+use crate::curvature::between;
+use crate::symmetric::{Across, Symmetric, cross, dot, scaled, sum, way};
 use crate::unit::reciprocal_of_power;
 use crate::{RigidMotion, Trajectory};
 
@@ -174,7 +175,8 @@ impl<V: Vector> Solver<'_, V> {
             DifferenceSpan::None => (self.soft(r), [zero; 2]),
             DifferenceSpan::Edge(side, e) => {
                 let held = dot(e, turns[side]);
-                let change = self.held_along(e, held, r);
+                // K·n′ = r across the edge.
+                let change = between(self.stiffness, negative(r), e, held);
                 let along = dot(e, rest(change));
                 (change, slides(side, scaled(e, along)))
             }
@@ -193,35 +195,9 @@ impl<V: Vector> Solver<'_, V> {
         }
     }
 
-    /// `K⁻¹·r`, by elimination from the larger diagonal entry; in 2D there is one.
+    /// `K⁻¹·r`; in 2D there is one entry.
     fn soft(&self, r: Across<V::Scalar>) -> Across<V::Scalar> {
-        let Symmetric { a, b, d } = self.stiffness;
-        if V::DIM == 2 {
-            return (r.0 / a, V::Scalar::ZERO);
-        }
-        let eliminated = |a: V::Scalar, d: V::Scalar, (x, y): Across<V::Scalar>| {
-            let share = b / a;
-            let second = (y - share * x) / (d - share * b);
-            ((x - b * second) / a, second)
-        };
-        if a > d {
-            eliminated(a, d, r)
-        } else {
-            let (y, x) = eliminated(d, a, (r.1, r.0));
-            (x, y)
-        }
-    }
-
-    /// The change that is `held` along the unit vector `e`, and that meets `K·n′ = r` across it.
-    fn held_along(&self, e: Across<V::Scalar>, held: V::Scalar, r: Across<V::Scalar>) -> Across<V::Scalar> {
-        let along = scaled(e, held);
-        if V::DIM == 2 {
-            return along;
-        }
-        let f = turned_left(e);
-        let pulled = self.stiffness.times(f);
-        let aside = (dot(f, r) - held * dot(e, pulled)) / dot(f, pulled);
-        sum(along, scaled(f, aside))
+        if V::DIM == 2 { (r.0 / self.stiffness.a, V::Scalar::ZERO) } else { self.stiffness.solve(r) }
     }
 }
 

@@ -33,7 +33,6 @@
 //! Between the two times the projected corners are known by how far they can have moved. A coordinate of a path whose
 //! second derivative is no more than `m` in amount is no farther from its chord than `m·τ²/8`, with `τ` the duration.
 
-use convex_support::numerics::elementary::hypot;
 use convex_support::{Posed, Scalar, Vector};
 use num_traits::Float as _;
 
@@ -45,20 +44,14 @@ use super::trajectory::TurningPlane;
 use crate::SignedDistanceOptions;
 use crate::gjk::{Frame, Gjk, GjkOptions, gjk, rounding};
 use crate::observer::Observer;
+use crate::separation::ProjectedFace;
 use crate::shape::WithoutLines;
 use crate::signed_distance::signed_distance_of_any;
-use crate::simplex::MAX_POINTS;
-use crate::symmetric::{Across, axes_across, cross, dot};
+use crate::symmetric::axes_across;
 use crate::unit::{is_moderate, length_bound};
 
 /// The error of corners, in units of the error of the pair's support points: corners were also turned back and forth.
 const ERRORS: f64 = 4.0;
-
-/// Corners projected along a unit vector: their coordinates across it, and their heights along it.
-struct SeenCorners<S> {
-    at: [Across<S>; MAX_POINTS],
-    heights: [S; MAX_POINTS],
-}
 
 impl<V: Vector> MovingPair<'_, V> {
     /// Whether the bodies, which overlap by `depth` at least at two times, certainly have a point in common at all
@@ -111,11 +104,11 @@ impl<V: Vector> MovingPair<'_, V> {
         for (&before, &after) in before.iter().zip(&after).take(dimension) {
             moved += length_bound(after - before);
         }
-        let seen_before = SeenCorners::along(near.normal, &before);
-        let seen_after = SeenCorners::along(near.normal, &after);
+        let seen_before = ProjectedFace::along(near.normal, &before);
+        let seen_after = ProjectedFace::along(near.normal, &after);
         // Between the two times no projected corner is farther than `moved` from where it was at the first.
-        let is_seen_within = seen_before.room::<V>() > moved;
-        let (height, lost) = seen_after.height_at_zero::<V>();
+        let is_seen_within = seen_before.surrounds_zero(moved);
+        let (height, lost) = seen_after.height_at_zero();
         // NaN is no proof.
         is_seen_within && near.gap > Scalar::ZERO && height < -(error + lost)
     }
@@ -157,53 +150,4 @@ impl<V: Vector> MovingPair<'_, V> {
 fn error_of<V: Vector>(placed: &Placed<'_, V>) -> V::Scalar {
     let pair = placed.pair();
     rounding(pair.size(placed.offset)) + pair.error()
-}
-
-impl<S: Scalar> SeenCorners<S> {
-    fn along<V: Vector<Scalar = S>>(n: V, points: &[V; MAX_POINTS]) -> Self {
-        let [e, f] = axes_across(n);
-        Self { at: points.map(|p| (e.dot(p), f.dot(p))), heights: points.map(|p| n.dot(p)) }
-    }
-
-    /// The distance of zero from the boundary of the projection, if zero is within it; otherwise zero or less.
-    ///
-    /// Zero stays within the projection as long as no projected corner moves farther than that: to let zero out by a
-    /// side, the ends of that side would have to come towards it by at least that distance.
-    fn room<V: Vector<Scalar = S>>(&self) -> S {
-        let at = &self.at;
-        if V::DIM == 2 {
-            let (p, q) = (at[0].0, at[1].0);
-            return p.max(q).min(-p.min(q));
-        }
-        let height = |i: usize, j: usize| {
-            let edge = (at[j].0 - at[i].0, at[j].1 - at[i].1);
-            cross(at[i], at[j]) / hypot(edge.0, edge.1)
-        };
-        let heights = [height(0, 1), height(1, 2), height(2, 0)];
-        let most = heights.into_iter().fold(S::neg_infinity(), S::max);
-        let least = heights.into_iter().fold(S::infinity(), S::min);
-        // If the corners are in clockwise order, all of these are negative.
-        least.max(-most)
-    }
-
-    /// The height at which the line through zero pierces the triangle or segment, and a bound on the rounding of this
-    /// height. Zero has to be within the projection.
-    ///
-    /// Let `H` be the greatest of the heights. The parts of a segment are right to a few ε, so that no more than
-    /// `8·ε·H` is lost. An area is wrong by `2·ε·L²`, where `L` is the distance of the farthest projected corner from
-    /// zero. Three areas change the height by `12·ε·H·L²/area`, and the sums lose as much as for a segment.
-    fn height_at_zero<V: Vector<Scalar = S>>(&self) -> (S, S) {
-        let (at, heights) = (&self.at, &self.heights);
-        let epsilon = S::EPSILON * S::from_f64(16.0);
-        let greatest = heights[..V::DIM].iter().fold(S::ZERO, |most, height| most.max(height.abs()));
-        if V::DIM == 2 {
-            let (p, q) = (at[0].0, at[1].0);
-            return ((heights[0] * q - heights[1] * p) / (q - p), epsilon * greatest);
-        }
-        let areas = [cross(at[1], at[2]), cross(at[2], at[0]), cross(at[0], at[1])];
-        let sum = areas[0] + areas[1] + areas[2];
-        let height = (heights[0] * areas[0] + heights[1] * areas[1] + heights[2] * areas[2]) / sum;
-        let farthest = at[..3].iter().fold(S::ZERO, |most, &corner| most.max(dot(corner, corner)));
-        (height, epsilon * greatest * (S::ONE + farthest / sum.abs()))
-    }
 }

@@ -12,15 +12,15 @@
 //! overlap, the simplex of the corners and the farthest point of the difference behind them has zero inside, which
 //! proves it.
 
-use convex_support::{Scalar, SupportMap as _, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float;
 
 use super::instant::{Instant, Limits, NEAR};
 use super::moving_pair::MovingPair;
 use super::placed::{CornerFace, Placed};
-use crate::body::TracedSupport as _;
+use crate::body::{PointPair, TracedSupport as _};
 use crate::gjk::rounding;
-use crate::separation::{Cores, Uncertainty, slack};
+use crate::separation::{Uncertainty, room_within, slack};
 use crate::simplex::{MAX_POINTS, project_rarely};
 use crate::unit::is_moderate;
 
@@ -71,30 +71,43 @@ impl<V: Vector> MovingPair<'_, V> {
         if !is_known || limits.depth > Scalar::ZERO {
             return None;
         }
-        // The origin of `b` is at zero, so that the difference of the origins is exact.
-        let known = Uncertainty::of_exact_offset([placed.a.rounding(), placed.b.rounding()], offset);
-        let error_along = known.along(unit);
-        let error = error_along + slack(lower, radius);
+        // Points of segments are rounded by one product and one sum more than support points.
+        let lost = V::Scalar::EPSILON * pair.extent();
+        let known = placed.uncertainty();
+        let reached = |along| Some(length + known.beyond_length(length, along) - radius + slack(length, radius) + lost);
+        self.known_closely(&placed, &known, unit, (v, points), lower, reached)
+    }
+
+    /// The bodies as exactly as they can be known, whose cores a plane across a unit vector keeps apart by `lower`, if
+    /// their points that are apart by `v` are closest, and prove that the bodies are apart or, by an upper bound of
+    /// their distance, that they overlap.
+    #[inline(always)]
+    fn known_closely(
+        &self,
+        placed: &Placed<'_, V>,
+        known: &Uncertainty<V>,
+        unit: V,
+        (v, points): (V, PointPair<V>),
+        lower: V::Scalar,
+        upper: impl FnOnce(V::Scalar) -> Option<V::Scalar>,
+    ) -> Option<Instant<V>> {
+        let radius = self.a.core.radius + self.b.core.radius;
+        let along = known.along(unit);
+        let (distance, error) = (lower - radius, along + slack(lower, radius));
         // If a number is NaN, the points do not count as closest.
         if !(unit.dot(v) - lower <= error * Scalar::from_f64(IN_PLANE)) {
             return None;
         }
-        let mut upper: V::Scalar = Float::infinity();
-        if !(distance > error) {
-            // Points of segments are rounded by one product and one sum more than support points.
-            let lost = V::Scalar::EPSILON * pair.extent();
-            upper = known.greatest_length(length, error_along) - radius + slack(length, radius) + lost;
-            if !(upper < Scalar::ZERO) {
-                return None;
-            }
-        }
-        Some(Instant { upper, is_close: true, ..self.across(&placed, unit, points, [distance, error]) })
+        let is_apart = distance > error;
+        let upper = if is_apart { Float::infinity() } else { upper(along)? };
+        let is_known = is_apart || upper < Scalar::ZERO;
+        is_known.then(|| Instant { upper, is_close: true, ..self.across(placed, unit, points, [distance, error]) })
     }
 
     /// The bodies at a time, as exactly as they can be known, if the corners that were closest at the last look are so
     /// still and prove that the bodies are apart or that they overlap.
     pub(super) fn near_look(&self, placed: &Placed<'_, V>, axis: V) -> Option<Instant<V>> {
-        let pair = placed.pair();
+        let mut pair = placed.pair();
         let size = pair.size(placed.offset);
         if !is_moderate(size) {
             return None;
@@ -107,31 +120,31 @@ impl<V: Vector> MovingPair<'_, V> {
         if !(unit.dot(axis) > Scalar::ZERO) {
             return None;
         }
-        let mut cores = Cores::new(placed, [pair.core_a, pair.core_b]);
-        cores.sharpen();
-        let (scale, radius) = (cores.scale(), cores.radius());
-        let lower = unit.dot(cores.support(-unit)?.point) * scale;
-        let error = cores.error_along(unit) * scale + slack(lower, radius);
-        // If a number is NaN, the points do not count as closest.
-        let is_closest = unit.dot(face.v) - lower <= error * Scalar::from_f64(IN_PLANE);
-        let distance = lower - radius;
-        let mut upper = V::Scalar::infinity();
-        if is_closest && !(distance > error) {
-            upper = self.overlap_of_corners(&mut cores, &face, unit)?;
-        }
-        self.count(cores.iterations);
-        let is_known = is_closest && (distance > error || upper < Scalar::ZERO);
-        is_known.then(|| Instant { upper, is_close: true, ..self.across(placed, unit, points, [distance, error]) })
+        let known = placed.uncertainty();
+        let lower = unit.dot(pair.support(-unit).0 + placed.offset);
+        self.count(1);
+        let reached = |_| self.overlap_of_corners(placed, &known, &face, unit);
+        self.known_closely(placed, &known, unit, (face.v, points), lower, reached)
     }
 
-    /// An upper bound of the signed distance, if the corners of a face prove that the bodies overlap; infinity if they
-    /// do not. `None` if a support point is not known.
+    /// An upper bound of the signed distance, if the corners of a face prove that the bodies overlap; `None` if they
+    /// do not.
     ///
     /// Each corner is looked for anew, along a direction that leans away from the others, since a corner that was kept
     /// is less exact than a support point.
-    fn overlap_of_corners(&self, cores: &mut Cores<'_, V>, face: &CornerFace<V>, unit: V) -> Option<V::Scalar> {
-        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
-        let (scale, radius, dimension) = (cores.scale(), cores.radius(), V::DIM);
+    fn overlap_of_corners(
+        &self,
+        placed: &Placed<'_, V>,
+        known: &Uncertainty<V>,
+        face: &CornerFace<V>,
+        unit: V,
+    ) -> Option<V::Scalar> {
+        let (zero, mut pair) = (V::Scalar::ZERO, placed.pair());
+        let radius = pair.radius();
+        let mut support = |direction| {
+            self.count(1);
+            pair.support(direction).0 + placed.offset
+        };
         let &CornerFace { points: corners, len, .. } = face;
         let mut points = [V::ZERO; MAX_POINTS];
         for (i, point) in points[..len].iter_mut().enumerate() {
@@ -140,25 +153,26 @@ impl<V: Vector> MovingPair<'_, V> {
                 let edge = corners[i] - corners[j];
                 direction += edge * (V::Scalar::EPSILON.sqrt() / edge.length());
             }
-            *point = cores.support(direction)?.point;
+            *point = support(direction);
         }
         if radius > zero {
             let weights = project_rarely(&points[..len], &|corner| -corner).coordinates;
             if !weights[..len].iter().all(|&weight| weight > zero) {
-                return Some(infinity);
+                return None;
             }
             let (mut closest, mut sum) = (V::ZERO, zero);
             for (&point, &weight) in points[..len].iter().zip(&weights) {
                 closest += point * weight;
                 sum += weight;
             }
-            let length = cores.greatest_length(closest / sum) * scale;
+            let closest = closest / sum;
+            let length = closest.norm() + known.beyond(closest);
             return Some(length - radius + slack(length, radius));
         }
-        if len != dimension {
-            return Some(infinity);
+        if len != V::DIM {
+            return None;
         }
-        points[len] = cores.support(unit)?.point;
-        Some(-cores.room_within(&points[..=len]) * scale)
+        points[len] = support(unit);
+        Some(-room_within(&points, |n| known.along(n)))
     }
 }

@@ -5,7 +5,7 @@ use core::cell::Cell;
 use convex_support::{Core, CoreKind, Feature, Hint, Matrix, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
 use crate::body::{Aligned, Of, Pair, PointPair, Shapes};
-use crate::separation::across_corners;
+use crate::separation::{Uncertainty, across_corners};
 use crate::shape::Shape;
 use crate::simplex::{MAX_POINTS, project};
 
@@ -121,6 +121,12 @@ impl<V: Vector> Placed<'_, V> {
     #[inline(always)]
     pub(super) fn pair(&self) -> Pair<'_, Self> {
         Pair::new(self, [&self.a.core, &self.b.core])
+    }
+
+    /// By how much its points may be wrong. The origin of `b` is at zero, so that the difference of both is exact.
+    #[inline(always)]
+    pub(super) fn uncertainty(&self) -> Uncertainty<V> {
+        Uncertainty::of_exact_offset([self.a.rounding(), self.b.rounding()], self.offset)
     }
 }
 

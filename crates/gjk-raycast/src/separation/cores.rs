@@ -1,27 +1,18 @@
 //! The difference of two cores: its support points, their errors, and the result of GJK on it.
 
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Core, Rounding, Scalar, Vector};
+use convex_support::{Core, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::near_contact::{NEAR, NearContact, is_near_contact, near_contact};
-use super::room::{faces_of_simplex, room_around_zero};
+use super::uncertainty::{Uncertainty, error_of_points};
 use super::zonotope::{Zonotope, parallelotope};
 use super::{OfOverlap, Wanted};
 use crate::body::{AnyPair, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
-use crate::simplex::MAX_POINTS;
 use crate::symmetric::Symmetric;
 use crate::unit::lost_to_underflow;
-
-/// The rounding of a point of the difference, in units of ε times the coordinates of the cores and of the offset of
-/// their origins.
-///
-/// A dot product with a unit vector counts in: its three products and two sums lose 1.5 of their magnitudes. The sums
-/// `a − b` and `a − b + o` lose 0.5 each.
-const SUM: f64 = 2.6;
-const OFFSET: f64 = 2.1;
 
 /// If the boundary is smooth, a way ends at the support point to within the square root of this part of its length.
 const SMOOTH: f64 = 1e-3;
@@ -100,82 +91,12 @@ pub(crate) struct Cores<'a, V: Vector> {
     error: V::Scalar,
     /// The same coordinate by coordinate; `None` as long as the length suffices.
     uncertainty: Option<Uncertainty<V>>,
+    /// What the offset of the origins has lost, if that is asked.
+    lost_in_offset: V,
     /// The second measurement of both bodies near contact.
     pub(super) near: Option<NearContact<V>>,
     /// The support points computed.
     pub(crate) iterations: usize,
-}
-
-/// A bound on the error of points of the difference, in the unit: the errors that the shapes state, and the rounding
-/// here, coordinate by coordinate.
-pub(crate) struct Uncertainty<V: Vector> {
-    shapes: [Rounding<V>; 2],
-    lost: V,
-    /// The length of the rounding of the offset of their origins.
-    lost_in_offset: V::Scalar,
-}
-
-impl<V: Vector> Uncertainty<V> {
-    /// For the sum of two points, each rounded to the shapes' extents, and the offset of their origins.
-    #[inline]
-    fn new(shapes: [Rounding<V>; 2], offset: V, lost_in_offset: V) -> Self {
-        let known = Self::of_exact_offset(shapes, offset);
-        // The product with the power of two loses nothing, and its length a few ulps.
-        let length = lost_in_offset.norm() * Scalar::from_f64(1.01);
-        Self { lost: known.lost + lost_in_offset.abs(), lost_in_offset: length, ..known }
-    }
-
-    /// The same if the offset is exact.
-    #[inline(always)]
-    pub(crate) fn of_exact_offset(shapes: [Rounding<V>; 2], offset: V) -> Self {
-        let epsilon: V::Scalar = Scalar::EPSILON;
-        let extents = shapes[0].extent + shapes[1].extent;
-        let lost = extents * (epsilon * Scalar::from_f64(SUM)) + offset.abs() * (epsilon * Scalar::from_f64(OFFSET));
-        Self { shapes, lost, lost_in_offset: Scalar::ZERO }
-    }
-
-    #[inline]
-    pub(crate) fn along(&self, n: V) -> V::Scalar {
-        let n = n.abs();
-        let of_shapes = self.shapes.iter().map(|shape| n.dot(shape.error).min(shape.error_length));
-        of_shapes.fold(n.dot(self.lost), |sum, error| sum + error)
-    }
-
-    pub(crate) fn length(&self) -> V::Scalar {
-        self.shapes.iter().fold(self.lost.norm(), |sum, shape| sum + shape.error_length)
-    }
-
-    /// A bound on the length of the exact point for a computed point of the difference, which is at `length` from zero
-    /// and wrong by `along` in its own direction.
-    #[inline(always)]
-    pub(crate) fn greatest_length(&self, length: V::Scalar, along: V::Scalar) -> V::Scalar {
-        greatest_length(length + along, self.length())
-    }
-}
-
-/// A bound on the error of points of the difference of two cores of the given size, as a length, in the world's unit:
-/// no less than any [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths,
-/// and the offset of the origins loses half an ε of its own.
-#[inline(always)]
-pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
-    pair: &Pair<'_, T>,
-    size: V::Scalar,
-) -> V::Scalar {
-    pair.error() + (size - pair.radius()) * (V::Scalar::EPSILON * Scalar::from_f64(SUM))
-}
-
-/// A bound on the length of a vector of the given `length` along a direction and an `error` across it: √(l² + e²) is
-/// at most l + e²/2l, and nothing overflows.
-#[inline(always)]
-fn greatest_length<S: Scalar>(length: S, error: S) -> S {
-    if error < length { length + error * (error / length) } else { length + error }
-}
-
-/// The rounding of a signed distance in the world's unit: unit vectors are so to 2ε, and the sum of the radii and the
-/// two sums that the radii and the length go into round to half of that.
-#[inline(always)]
-pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
-    S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
 }
 
 /// The depth of cores, or minus their distance, in closed form, in the unit.
@@ -198,27 +119,33 @@ impl<'a, V: Vector> Cores<'a, V> {
         let radii = [pair.core_a.radius, pair.core_b.radius];
         let frame = Frame::new(&mut pair, offset, size);
         let error = error_of_points(&pair, size) * frame.per_unit + lost_to_underflow(frame.scale);
-        let (zero, size) = (Scalar::ZERO, size * frame.per_unit);
-        Self { pair, radii, frame, size, peeled_error: zero, error, uncertainty: None, near: None, iterations: 0 }
+        let (zero, lost_in_offset, size) = (Scalar::ZERO, V::ZERO, size * frame.per_unit);
+        Self {
+            pair,
+            radii,
+            frame,
+            size,
+            peeled_error: zero,
+            error,
+            uncertainty: None,
+            lost_in_offset,
+            near: None,
+            iterations: 0,
+        }
     }
 
     /// Gets the errors of the shapes' points, coordinate by coordinate, which takes longer than many a distance. For a
     /// horizontal floor they do not depend on its width.
     #[inline(never)]
-    pub(crate) fn sharpen(&mut self) {
+    pub(super) fn sharpen(&mut self) {
         // Nothing is known about numbers out of range, whatever the shapes state.
         if self.uncertainty.is_some() || !self.error.is_finite() {
             return;
         }
-        let Frame { offset, per_unit, .. } = self.frame;
-        let in_unit = |r: Rounding<V>| Rounding {
-            extent: r.extent * per_unit,
-            error: r.error * per_unit,
-            error_length: r.error_length * per_unit,
-        };
-        let shapes = self.pair.shapes.each().map(|shape| in_unit(shape.rounding()));
-        let [from, to] = [self.pair.core_a.origin, self.pair.core_b.origin];
-        self.uncertainty = Some(Uncertainty::new(shapes, offset, lost_in_sum(from, -to) * per_unit));
+        let (Pair { core_a, core_b, .. }, Frame { offset, per_unit, .. }) = (&self.pair, self.frame);
+        self.lost_in_offset = lost_in_sum(core_a.origin, -core_b.origin) * per_unit;
+        let known = Uncertainty::new(&self.pair, per_unit).of_sums(offset);
+        self.uncertainty = Some(known.with(self.lost_in_offset.abs()));
     }
 
     /// Whether bodies whose cores are so far apart are nearer to contact than a few errors.
@@ -290,16 +217,6 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.pair.peeled != [Scalar::ZERO; 2]
     }
 
-    /// The radius of a ball about zero that is certainly within the simplex with these corners, one more than there are
-    /// dimensions; not positive if zero may be outside.
-    pub(crate) fn room_within(&self, corners: &[V]) -> V::Scalar {
-        let mut points = [V::ZERO; MAX_POINTS];
-        for (point, &corner) in points.iter_mut().zip(corners) {
-            *point = corner;
-        }
-        room_around_zero(faces_of_simplex(&points), |_| self.greatest_error(), |_| Scalar::ONE)
-    }
-
     /// The factor from lengths in the unit to the world's.
     pub(crate) fn scale(&self) -> V::Scalar {
         self.frame.scale
@@ -344,22 +261,19 @@ impl<'a, V: Vector> Cores<'a, V> {
     /// A bound on the error of `n·p`, for a unit vector `n` and a point `p` of the difference; and on how much a
     /// support point along `n` falls short of the support value.
     #[inline]
-    pub(crate) fn error_along(&self, n: V) -> V::Scalar {
+    pub(super) fn error_along(&self, n: V) -> V::Scalar {
         self.uncertainty.as_ref().map_or(self.error, |known| known.along(n)) + self.peeled_error
     }
 
     /// A bound on [`error_along`](Self::error_along) in any direction.
-    pub(crate) fn greatest_error(&self) -> V::Scalar {
+    pub(super) fn greatest_error(&self) -> V::Scalar {
         self.uncertainty.as_ref().map_or(self.error, Uncertainty::length) + self.peeled_error
     }
 
-    /// A bound on the length of what a point `p` of the difference stands for. Along `p` it is as wrong as along any
-    /// unit vector, and what it is wrong by across hardly adds to the length.
+    /// A bound on the length of what a point `p` of the difference stands for.
     #[inline(always)]
-    pub(crate) fn greatest_length(&self, p: V) -> V::Scalar {
-        let error = self.greatest_error();
-        let along = if self.uncertainty.is_some() { p.unit().map_or(error, |n| self.error_along(n)) } else { error };
-        greatest_length(p.norm() + along, error)
+    pub(super) fn greatest_length(&self, p: V) -> V::Scalar {
+        p.norm() + self.uncertainty.as_ref().map_or(self.error, |known| known.beyond(p)) + self.peeled_error
     }
 
     /// What GJK moves points by as it compares them.
@@ -393,8 +307,9 @@ impl<'a, V: Vector> Cores<'a, V> {
         let nearest = zonotope.nearest_facet::<V>()?;
         // Computed in double precision, of edges and an offset that are wrong by what the shapes say.
         self.sharpen();
-        let Uncertainty { shapes, lost_in_offset, .. } = self.uncertainty.as_ref()?;
-        let error = shapes.iter().fold(*lost_in_offset, |sum, s| sum + s.error_length);
+        let stated = self.uncertainty.as_ref()?.stated_length;
+        // The length is right to a few ulps.
+        let error = stated + self.lost_in_offset.norm() * Scalar::from_f64(1.01);
         let half_ulp = V::Scalar::EPSILON * Scalar::from_f64(0.5 * nearest.depth);
         let [depth, inner, outer] = [nearest.depth, nearest.inner, nearest.outer].map(Scalar::from_f64);
         let error = error + half_ulp;
@@ -481,20 +396,5 @@ impl<'a, V: Vector> Cores<'a, V> {
             self.iterations += state.iterations;
         }
         state
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::greatest_length;
-
-    /// What is known to lie `along` a direction, and to be wrong by some error across it, is no longer than that.
-    #[test]
-    fn an_error_across_makes_a_length_greater() {
-        for (length, error) in [(3.0, 4.0), (4.0, 3.0), (1.0, 1e-9), (1e-9, 1.0), (0.0, 1.0), (1.0, 0.0_f64)] {
-            let bound = greatest_length(length, error);
-            assert!(bound >= length.hypot(error) && bound <= length + error, "{length} {error} {bound}");
-        }
-        assert!(greatest_length(1.0_f64, f64::NAN).is_nan());
     }
 }

@@ -10,7 +10,7 @@ use super::witness::{self, Ends, MetPoint};
 use crate::SignedDistanceOptions;
 use crate::gjk::Gjk;
 use crate::observer::Observer;
-use crate::simplex::{MAX_POINTS, cross};
+use crate::simplex::{MAX_POINTS, project_rarely};
 use crate::{Iterate, Status};
 
 /// The width of a bracket relative to the way out, below which the tolerance is enough; and the number of further
@@ -376,14 +376,12 @@ fn first_polytope<V: Vector>(
 struct AffineSpan<V: Vector> {
     points: [Vertex<V>; MAX_POINTS],
     len: usize,
-    /// Orthogonal unit vectors along the edges from the first point.
-    basis: [V; MAX_POINTS],
 }
 
 impl<V: Vector> AffineSpan<V> {
     fn new() -> Self {
         let none = Vertex { point: V::ZERO, along: V::ZERO, pair: Default::default() };
-        Self { points: [none; MAX_POINTS], len: 0, basis: [V::ZERO; MAX_POINTS] }
+        Self { points: [none; MAX_POINTS], len: 0 }
     }
 
     /// Adds a point, unless it is no farther from the span of the others than rounding; whether it was added.
@@ -391,9 +389,8 @@ impl<V: Vector> AffineSpan<V> {
     fn add(&mut self, cores: &Cores<'_, V>, &vertex: &Vertex<V>) -> bool {
         if self.len > 0 {
             let edge = self.orthogonal(vertex.point - self.points[0].point);
-            match edge.unit() {
-                Some(u) if u.dot(edge) > cores.rounding_along(u) => self.basis[self.len - 1] = u,
-                _ => return false,
+            if !edge.unit().is_some_and(|u| u.dot(edge) > cores.rounding_along(u)) {
+                return false;
             }
         }
         self.points[self.len] = vertex;
@@ -401,29 +398,16 @@ impl<V: Vector> AffineSpan<V> {
         true
     }
 
-    /// The part of a vector across the span. Done twice, it is so to rounding.
-    #[inline(never)]
-    fn orthogonal(&self, mut v: V) -> V {
-        for _ in 0..2 {
-            for &e in &self.basis[..self.len.saturating_sub(1)] {
-                v -= e * e.dot(v);
-            }
-        }
-        v
+    /// The part of a vector across the span.
+    fn orthogonal(&self, v: V) -> V {
+        let points = self.points.map(|vertex| vertex.point);
+        if self.len > 1 { project_rarely(&points[..self.len], &|_| v).across } else { v }
     }
 
     fn across(&self) -> V {
-        if V::DIM == 3 && self.len == 3 {
-            return cross(self.basis[0], self.basis[1]).unit().unwrap_or_else(|| V::axis(0));
-        }
-        let mut best = V::ZERO;
-        for i in 0..V::DIM {
-            let v = self.orthogonal(V::axis(i));
-            if v.length_squared() > best.length_squared() {
-                best = v;
-            }
-        }
-        best.unit().unwrap_or_else(|| V::axis(0))
+        let axes = (0..V::DIM).map(|i| self.orthogonal(V::axis(i)));
+        let longest = axes.reduce(|best, v| if v.length_squared() > best.length_squared() { v } else { best });
+        longest.and_then(V::unit).unwrap_or_else(|| V::axis(0))
     }
 }
 

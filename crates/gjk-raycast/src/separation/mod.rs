@@ -11,6 +11,7 @@ mod faces;
 mod near_contact;
 mod newton;
 mod room;
+mod uncertainty;
 mod witness;
 mod zonotope;
 
@@ -23,13 +24,15 @@ use crate::extra::{Extra, in_static};
 use crate::gjk::{End, Gjk, rounding};
 use crate::observer::Observer;
 use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, Status, SubAlgorithm};
-use cores::{ClosedForm, WayOut, error_of_points};
-pub(crate) use cores::{Cores, Uncertainty, slack};
+pub(crate) use cores::Cores;
+use cores::{ClosedForm, WayOut};
 use expansion::{Expanded, expand};
-pub(crate) use faces::is_around_zero;
+pub(crate) use faces::{ProjectedFace, is_around_zero};
 use near_contact::NEAR;
 pub(crate) use near_contact::{NearContact, is_near_contact, near_contact_of};
-pub(crate) use room::{FromContact, across_corners, look_after};
+pub(crate) use room::{FromContact, across_corners, look_after, room_within};
+use uncertainty::error_of_points;
+pub(crate) use uncertainty::{Uncertainty, slack};
 use witness::{Ends, MetPoint};
 
 /// The question about two bodies, and when the search may stop.
@@ -166,7 +169,7 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     let is_full = end == End::Overlap && state.simplex.points().len() > V::DIM;
     if IS_DEPTH {
         if !is_known && is_full {
-            known.inner = known.inner.max(cores.room_within(state.simplex.points()));
+            known.inner = known.inner.max(room_within(state.simplex.points(), |_| cores.greatest_error()));
         }
     } else {
         // A simplex of full dimension certainly has zero inside, or a second measurement would have been made.

@@ -7,13 +7,13 @@
 //! The search begins at the offset of the origins, whatever axis the query began at, and the [larger body comes
 //! first](super::order). So all queries about one pair decide alike.
 
-use convex_support::numerics::bound::{raised, raised_vector, roundings, roundings_of};
-use convex_support::numerics::elementary::hypot;
+use convex_support::numerics::bound::{raised, roundings, roundings_of};
 use convex_support::numerics::twofold::{dot_minus, lost_in_sum};
-use convex_support::{Core, CoreKind, Rounding, Scalar, Vector};
+use convex_support::{Core, CoreKind, Scalar, Vector};
 use num_traits::Float;
 
-use super::faces::{about_edge, across_faces, is_around_zero};
+use super::faces::{ProjectedFace, about_edge, across_faces, is_around_zero};
+use super::uncertainty::Uncertainty;
 use crate::body::{AnyPair, Both, CastBody as _, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
@@ -132,11 +132,11 @@ pub(crate) fn near_contact<V: Vector>(
     if begun.is_none()
         && max_iterations > 0
         && let Some(points) = pair.closest_points(frame.offset * frame.scale, size)
-        && let Some(known) = seen.between_closest(pair, frame, points)
+        && let Some(known) = seen.between_closest(pair, points)
     {
         return Some(known);
     }
-    seen.search(pair, frame, begun, size, max_iterations)
+    seen.search(pair, begun, size, max_iterations)
 }
 
 /// GJK from the closest points, where they are known in closed form, or from the offset of the origins to the noise.
@@ -240,65 +240,46 @@ fn overlapping<V: Vector>(state: &Gjk<V>, frame: &Frame<V>) -> NearContact<V> {
     }
 }
 
-/// The data of positions, coordinate by coordinate, in units of the frame.
+/// What is known of the points of the difference of the cores, in units of the frame.
 struct Known<V: Vector> {
-    offset: V,
-    /// The rounding of the offset.
+    frame: Frame<V>,
+    /// The rounding of the offset, which is added.
     lost: V,
-    radius: V::Scalar,
-    /// A bound on the coordinates of the cores' points.
-    extent: V,
-    /// The errors of the support points of both shapes, and their length.
-    error: V,
-    error_length: V::Scalar,
+    /// The error of points that are added up in twice the precision, except for one rounding of the sum.
+    points: Uncertainty<V>,
+    /// A bound on twice the error of the corners of a simplex, and a few roundings.
+    error_of_corners: V::Scalar,
 }
 
 impl<V: Vector> Known<V> {
     fn new(pair: &AnyPair<'_, V>, frame: &Frame<V>) -> Self {
-        let per_unit = frame.per_unit;
-        let [a, b]: [Rounding<V>; 2] = pair.shapes.each().map(|shape| shape.rounding());
-        Self {
-            offset: frame.offset,
-            lost: lost_in_sum(pair.core_a.origin, -pair.core_b.origin) * per_unit,
-            radius: frame.radius,
-            extent: (a.extent + b.extent) * per_unit + frame.offset.abs(),
-            error: raised_vector((a.error + b.error) * per_unit),
-            error_length: raised((a.error_length + b.error_length).min(pair.error()) * per_unit),
-        }
-    }
-
-    /// Whether points are much more accurate along one axis than along another.
-    fn is_uneven(&self) -> bool {
-        self.error.min_element() * V::Scalar::from_f64(4.0) < self.error.max_element()
-    }
-
-    /// The error of points of the difference along a unit vector.
-    fn error_along(&self, n: V) -> V::Scalar {
-        raised(n.abs().dot(self.error)).min(self.error_length)
+        let lost = lost_in_sum(pair.core_a.origin, -pair.core_b.origin) * frame.per_unit;
+        let points = Uncertainty::new(pair, frame.per_unit);
+        let extent = points.extent + frame.offset.abs();
+        // A sum of up to 16 products is right to 17² quarters of ε² of its summands.
+        let twice = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(1024.0);
+        let points = points.with(extent * twice);
+        let error_of_corners = points.length() * V::Scalar::from_f64(2.0) + roundings(16.0, extent.norm());
+        Self { frame: *frame, lost, points, error_of_corners }
     }
 
     /// `n·(a − b + offset)`, rounded once: the products are added up in twice the precision.
     fn level(&self, n: V, PointPair { a, b }: PointPair<V>) -> V::Scalar {
-        let parts = (0..V::DIM).flat_map(|i| [a, -b, self.offset, self.lost].map(|part| (n.get(i), part.get(i))));
+        let parts = (0..V::DIM).flat_map(|i| [a, -b, self.frame.offset, self.lost].map(|part| (n.get(i), part.get(i))));
         dot_minus(parts, V::Scalar::ZERO)
     }
 
     /// The answer from the closest points of both cores, if the plane across the vector between them meets them to both
     /// errors and is beyond the radii: then there is nothing to search.
-    fn between_closest(
-        &self,
-        pair: &mut AnyPair<'_, V>,
-        frame: &Frame<V>,
-        points: PointPair<V>,
-    ) -> Option<NearContact<V>> {
-        let v = pair.vector_between(points, self.offset);
+    fn between_closest(&self, pair: &mut AnyPair<'_, V>, points: PointPair<V>) -> Option<NearContact<V>> {
+        let v = pair.vector_between(points, self.frame.offset);
         let plane = self.plane(pair, v)?;
         let upper = self.length_between(points);
-        if !(plane.meets(upper) && plane.level > self.radius) {
+        if !(plane.meets(upper) && plane.level > self.frame.radius) {
             return None;
         }
         let mut best = plane;
-        if self.is_uneven() && !best.is_beyond(self.radius) {
+        if self.points.is_uneven() && !best.is_beyond(self.frame.radius) {
             // A point is a segment without length.
             let half = |core: &Core<V>| if let CoreKind::Segment { half, .. } = core.kind { half } else { V::ZERO };
             let halves = [half(pair.core_a), half(pair.core_b)];
@@ -307,24 +288,24 @@ impl<V: Vector> Known<V> {
                 best = self.plane(pair, n).filter(|plane| plane.certain() > best.certain()).unwrap_or(best);
             }
         }
-        Some(near_contact_at(frame, (best, upper), (End::Separated, 1), (points, v.norm())))
+        Some(near_contact_at(&self.frame, (best, upper), (End::Separated, 1), (points, v.norm())))
     }
 
     /// The result of GJK, as it was begun or from where all queries begin.
     fn search(
         &self,
         pair: &mut AnyPair<'_, V>,
-        frame: &Frame<V>,
         begun: Option<&Gjk<V>>,
         size: V::Scalar,
         max_iterations: usize,
     ) -> Option<NearContact<V>> {
+        let frame = &self.frame;
         let mut state = match begun {
             Some(&begun) => begun,
             None => begin(pair, frame, size, max_iterations),
         };
         state.ensure_measured();
-        if is_around_zero(state.simplex.points(), self.error_of_corners()) {
+        if is_around_zero(state.simplex.points(), self.error_of_corners) {
             return Some(overlapping(&state, frame));
         }
         let seen = |state: &Gjk<V>, end, found| {
@@ -332,7 +313,7 @@ impl<V: Vector> Known<V> {
         };
         let before = self.best_plane(pair, &state);
         let is_settled =
-            |(plane, upper): &(SupportPlane<V>, V::Scalar)| plane.meets(*upper) && plane.level > self.radius;
+            |(plane, upper): &(SupportPlane<V>, V::Scalar)| plane.meets(*upper) && plane.level > self.frame.radius;
         if before.as_ref().is_some_and(is_settled) {
             return before.map(|found| seen(&state, End::Separated, found));
         }
@@ -342,7 +323,7 @@ impl<V: Vector> Known<V> {
         }
         let begun = state;
         let end = go_on(&mut state, pair, frame, max_iterations);
-        if is_around_zero(state.simplex.points(), self.error_of_corners()) {
+        if is_around_zero(state.simplex.points(), self.error_of_corners) {
             return Some(overlapping(&state, frame));
         }
         let mut best = self.best_plane(pair, &state);
@@ -370,7 +351,7 @@ impl<V: Vector> Known<V> {
         let (mut best, mut length): (Option<SupportPlane<V>>, Option<V::Scalar>) = (None, None);
         let mut upper = V::Scalar::infinity();
         let about = match *points {
-            [p, q] if V::DIM == 3 && self.is_uneven() => Some(about_edge(p - q, state.axis)),
+            [p, q] if V::DIM == 3 && self.points.is_uneven() => Some(about_edge(p - q, state.axis)),
             _ => None,
         };
         for n in faces.chain(normal).chain([state.axis]).chain(about.into_iter().flatten()) {
@@ -386,7 +367,7 @@ impl<V: Vector> Known<V> {
                 if !is_of_face {
                     upper = upper.min(*length.get_or_insert_with(|| self.length(state)));
                 }
-                let is_closed = is_of_face || plane.meets(upper) && plane.is_beyond(self.radius);
+                let is_closed = is_of_face || plane.meets(upper) && plane.is_beyond(self.frame.radius);
                 best = Some(plane);
                 if is_closed {
                     break;
@@ -401,18 +382,16 @@ impl<V: Vector> Known<V> {
     fn may_be_beyond(&self, n: V, points: &[V], level: V::Scalar) -> bool {
         let nearest = points.iter().map(|p| n.dot(*p)).fold(V::Scalar::infinity(), V::Scalar::min);
         // NaN may be.
-        n != V::ZERO && !(nearest < (level - self.error_of_corners()) * n.length())
+        n != V::ZERO && !(nearest < (level - self.error_of_corners) * n.length())
     }
 
     /// The plane across `n` that supports the difference.
     fn plane(&self, pair: &mut AnyPair<'_, V>, n: V) -> Option<SupportPlane<V>> {
         let n = n.unit()?;
         let level = self.level(n, pair.support(-n).1);
-        // The unit vector's length is right to 6 roundings; the sum of the products is rounded once, and is right to
-        // within 1024ε² of the summands.
-        let squared = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(1024.0);
-        let rounded = roundings(8.0, level.abs()) + roundings(4.0, self.radius) + squared * n.abs().dot(self.extent);
-        level.is_finite().then(|| SupportPlane { n, level, error: raised(self.error_along(n) + rounded) })
+        // The unit vector's length is right to 6 roundings, and the sum of the products is rounded once.
+        let rounded = roundings(8.0, level.abs()) + roundings(4.0, self.frame.radius);
+        level.is_finite().then(|| SupportPlane { n, level, error: raised(self.points.along(n) + rounded) })
     }
 
     /// A bound on the length of the shortest vector found, `Σ wᵢ·(aᵢ − bᵢ + offset) / Σ wᵢ`: whatever the weights, that
@@ -420,93 +399,43 @@ impl<V: Vector> Known<V> {
     fn length(&self, state: &Gjk<V>) -> V::Scalar {
         let x = V::from_fn(|i| {
             let parts = state.simplex.weighted().flat_map(|(weight, PointPair { a, b })| {
-                [a, -b, self.offset, self.lost].map(|part| (weight, part.get(i)))
+                [a, -b, self.frame.offset, self.lost].map(|part| (weight, part.get(i)))
             });
             dot_minus(parts, V::Scalar::ZERO)
         });
         let x = x / state.simplex.weight();
         // The sum of the weights is right to three roundings, and to one each the sum of the products and the quotient.
-        self.length_of(x, roundings_of(5.0, x.abs()) + self.rounded_twice())
-    }
-
-    /// A bound on the rounding of sums of up to 16 products that are added up in twice the precision, besides one
-    /// rounding of the sum: 17² quarters of `ε²`.
-    fn rounded_twice(&self) -> V {
-        self.extent * (V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(128.0))
+        self.length_of(x, roundings_of(5.0, x.abs()))
     }
 
     /// The same for the vector between two points, given the rounding of the two sums.
     fn length_between(&self, PointPair { a, b }: PointPair<V>) -> V::Scalar {
         let apart = a - b;
-        let lost = lost_in_sum(a, -b).abs() + lost_in_sum(apart, self.offset).abs();
-        self.length_of(apart + self.offset, lost + self.lost.abs())
+        let lost = lost_in_sum(a, -b).abs() + lost_in_sum(apart, self.frame.offset).abs();
+        self.length_of(apart + self.frame.offset, lost + self.lost.abs())
     }
 
     /// A bound on the length of a vector `x` of the difference, which rounding has moved by no more than `rounded`,
     /// coordinate by coordinate, besides the errors of its points.
-    ///
-    /// With `u` the unit vector along it, the true vector is `x` but for some `e`. Along `u` that adds `|u|·|e|`, taken
-    /// coordinate by coordinate, and across it hardly anything: the length is at most `√(p² + |e|²)` with `p = |x| +
-    /// |u|·|e|`, which is `p + |e|²/(p + √(p² + |e|²))`.
     fn length_of(&self, x: V, rounded: V) -> V::Scalar {
-        let error = self.error + rounded;
-        let across = raised(error.norm().min(self.error_length + rounded.norm()));
-        let along = x.unit().map_or(across, |u| u.abs().dot(error));
         // The length itself is right to 3 roundings, and the sum to one: what is beside it is raised alone.
-        let norm = x.norm();
-        let ahead = norm + along;
-        let beside = (across * across / (ahead + hypot(ahead, across))).min(across);
-        let length = norm + (raised(along + beside) + roundings(8.0, norm));
+        let (norm, beyond) = (x.norm(), self.points.with(rounded).beyond(x));
+        let length = norm + (raised(beyond) + roundings(8.0, norm));
         if length.is_finite() { length } else { Float::infinity() }
-    }
-
-    /// A bound on twice the error of the corners of a simplex, and a few roundings.
-    fn error_of_corners(&self) -> V::Scalar {
-        self.error_length * V::Scalar::from_f64(2.0) + roundings(16.0, self.extent.norm())
     }
 
     /// A bound on the distance of the bodies from a face of the difference that the line along the unit vector `n`
     /// through zero certainly pierces: then no corner of the face is nearer along `n`.
-    ///
-    /// Along `n` the face is projected to the plane of two coordinates, the ones where `n` is shorter. There zero is
-    /// within a triangle if the areas with its sides are all of one sign, by more than their errors; in the plane,
-    /// within a segment if its ends are on two sides.
     fn length_at_pierced(&self, state: &Gjk<V>, n: V) -> V::Scalar {
-        let number = V::Scalar::from_f64;
-        let points = state.simplex.points();
-        if points.len() != V::DIM {
-            return Float::infinity();
-        }
-        let longest = (0..V::DIM).reduce(|k, i| if n.get(i).abs() > n.get(k).abs() { i } else { k }).unwrap_or(0);
-        let seen = |p: V| {
-            let part = p.get(longest) / n.get(longest);
-            let mut others = (0..V::DIM).filter(|&i| i != longest).map(|i| p.get(i) - n.get(i) * part);
-            [others.next().unwrap_or_default(), others.next().unwrap_or_default()]
-        };
-        let mut corners = [[V::Scalar::ZERO; 2]; 3];
-        for (corner, &point) in corners.iter_mut().zip(points) {
-            *corner = seen(point);
-        }
-        let size = corners.iter().flatten().fold(V::Scalar::ZERO, |size, x| size.max(x.abs()));
-        // A coordinate loses two errors of the points, since `n` is no longer anywhere.
-        let wrong = self.error_of_corners();
-        let is_inside = if V::DIM == 2 {
-            let [p, q] = [corners[0][0], corners[1][0]];
-            p.min(q) < -wrong && p.max(q) > wrong
-        } else {
-            let area = |i: usize, j: usize| corners[i][0] * corners[j][1] - corners[i][1] * corners[j][0];
-            let areas = [area(0, 1), area(1, 2), area(2, 0)];
-            let wrong = (size + wrong) * wrong * number(6.0);
-            areas.iter().all(|&a| a > wrong) || areas.iter().all(|&a| a < -wrong)
-        };
-        if !is_inside {
+        let is_face = state.simplex.points().len() == V::DIM;
+        if !(is_face && ProjectedFace::along(n, state.simplex.padded().0).surrounds_zero(self.error_of_corners)) {
             return Float::infinity();
         }
         // The face may be behind zero, which is outside all the same if the part beyond the face does not belong to the
         // difference.
         let levels = state.simplex.weighted().map(|(_, pair)| self.level(n, pair).abs());
         let farthest = levels.fold(V::Scalar::ZERO, V::Scalar::max);
-        raised(farthest + self.error_along(n) + roundings(8.0, farthest))
+        raised(farthest + self.points.along(n) + roundings(8.0, farthest))
     }
 }
 

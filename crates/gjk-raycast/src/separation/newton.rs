@@ -6,6 +6,7 @@ use num_traits::Float as _;
 use super::boundary::Boundary;
 use super::cores::{Cores, Vertex, WayOut};
 use crate::SignedDistanceOptions;
+use crate::curvature::{between, is_stiff_across};
 use crate::symmetric::{Across, Symmetric, axes_across, dot};
 
 /// The largest tangent of an angle to turn by.
@@ -160,22 +161,11 @@ impl<V: Vector> Piece<V> {
             // A vertex is exact.
             FoldSide::Near | FoldSide::Far => zero,
         };
-        let along = (value - other_value + lead) / squared;
-        let mut step = (e.0 * along, e.1 * along);
-        if V::DIM == 3 {
-            let across = (-e.1, e.0);
-            let stiffness = dot(across, bend.times(across));
-            if !(stiffness > zero) {
-                return None;
-            }
-            let aside = -(dot(across, p) + dot(across, bend.times(step))) / stiffness;
-            step = (step.0 + across.0 * aside, step.1 + across.1 * aside);
-        }
+        let is_stiff = V::DIM == 2 || is_stiff_across(bend, e);
+        let step = is_stiff.then(|| between(bend, p, e, value - other_value + lead))?;
         turned(self.n, self.across, step)
     }
-}
 
-impl<V: Vector> Piece<V> {
     /// The unit vector on the way to the edge of a piece that has no bottom of its own, if [`step`](Self::step) and
     /// [`step_along_fold`](Self::step_along_fold) lead nowhere: to the fold with another piece, if there is one that is
     /// lower.

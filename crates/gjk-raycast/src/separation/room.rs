@@ -3,12 +3,13 @@
 
 use core::array;
 
-use convex_support::numerics::bound::{raised, raised_vector, roundings, roundings_of};
+use convex_support::numerics::bound::{raised, roundings, roundings_of};
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::faces::turned_right;
 use super::near_contact::{begin, go_on};
+use super::uncertainty::Uncertainty;
 use crate::body::{AnyPair, Both, Pair, PointPair, Shapes as _};
 use crate::gjk::Frame;
 use crate::shape::Shape;
@@ -91,15 +92,13 @@ pub(crate) fn look_after<V: Vector>(
             });
         }
         if is_found {
-            let [of_a, of_b] = [a.rounding(), b.rounding()];
             // In units of `ε/2`, weighted sums lose 5, the weights' own sum 4, the difference and its sum with the
             // offset one each; the offset loses 2, and the step to the surface 4.
-            let points = (of_a.extent + of_b.extent) * frame.per_unit;
-            let error = raised_vector((of_a.error + of_b.error) * frame.per_unit)
-                + roundings_of(12.0, points)
-                + roundings_of(4.0, frame.offset.abs() + V::splat(frame.radius));
-            let astray = astray * frame.per_unit;
-            let error = |u: V| raised(u.abs().dot(error)).min(frame.error + frame.noise) + astray;
+            let known = Uncertainty::new(&pair, frame.per_unit);
+            let rounded =
+                roundings_of(12.0, known.extent) + roundings_of(4.0, frame.offset.abs() + V::splat(frame.radius));
+            let (known, astray) = (known.with(rounded), astray * frame.per_unit);
+            let error = |u: V| raised(known.along(u)).min(frame.error + frame.noise) + astray;
             times = room_around_zero(faces_of_octahedron(&corners), error, |u| from.reach(u)) * frame.scale;
         }
     }
@@ -119,11 +118,13 @@ fn faces_of_octahedron<V: Vector>(ends: &[[V; 2]; 3]) -> impl Iterator<Item = [V
     })
 }
 
-/// The same for the simplex with these corners, one more than there are dimensions.
-pub(crate) fn faces_of_simplex<V: Vector>(corners: &[V; MAX_POINTS]) -> impl Iterator<Item = [V; MAX_POINTS]> {
+/// The radius of a ball about zero that is certainly within the simplex with these corners, one more than there are
+/// dimensions, given their error along a unit vector; not positive if zero may be outside.
+pub(crate) fn room_within<V: Vector>(corners: &[V], error: impl Fn(V) -> V::Scalar) -> V::Scalar {
     let faces: &[[usize; 3]] =
         if V::DIM == 2 { &[[0, 1, 2], [1, 2, 0], [2, 0, 1]] } else { &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] };
-    faces.iter().map(|face| array::from_fn(|i| corners[face[i % 3]]))
+    let faces = faces.iter().map(|face| array::from_fn(|i| corners[face[i % 3]]));
+    room_around_zero(faces, error, |_| Scalar::ONE)
 }
 
 /// How many times a set about zero fits into a polytope with these faces, given the polytope's error along a unit
@@ -133,7 +134,7 @@ pub(crate) fn faces_of_simplex<V: Vector>(corners: &[V; MAX_POINTS]) -> impl Ite
 /// If zero is behind all faces, or before all of them, the cones from zero to the faces fill the space, and each is
 /// in the polytope up to the plane of its face. If all corners are wrong by less than that distance, zero is still
 /// inside, and so are all points behind all planes.
-pub(crate) fn room_around_zero<V: Vector>(
+pub(super) fn room_around_zero<V: Vector>(
     faces: impl Iterator<Item = [V; MAX_POINTS]>,
     error: impl Fn(V) -> V::Scalar,
     reach: impl Fn(V) -> V::Scalar,
