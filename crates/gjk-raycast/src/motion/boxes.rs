@@ -31,7 +31,7 @@ use super::moving_pair::MovingPair;
 use super::placed::{Moved, Placed};
 use crate::double::{Vec3, array, cross, dot, vector};
 use crate::gjk::rounding;
-use crate::separation::slack;
+use crate::separation::{Uncertainty, slack};
 use crate::unit::is_moderate;
 
 /// The number of edges of two boxes that count, three of each.
@@ -146,23 +146,29 @@ impl<V: Vector> MovingPair<'_, V> {
     /// and an upper bound. `None` unless zero's foot is within the facet, and the facet proves that the boxes are apart
     /// or that they overlap.
     #[inline(always)]
-    fn near_facet(&self, placed: &Placed<'_, V>, boxes: &Boxes, facet: &BoxFacet, axis: V) -> Option<[V::Scalar; 3]> {
+    fn near_facet(
+        &self,
+        Placed { a, b, offset, .. }: &Placed<'_, V>,
+        boxes: &Boxes,
+        facet: &BoxFacet,
+        axis: V,
+    ) -> Option<[V::Scalar; 3]> {
         let normal = vector::<V>(facet.normal);
         // If the boxes have passed through one another, the normal is on the other side.
         if !(facet.room > 0.0 && normal.dot(axis) > Scalar::ZERO) {
             return None;
         }
-        let Placed { a, b, offset, .. } = placed;
         let corner = a.core_support(-normal, &mut Hint::new()) - b.core_support(normal, &mut Hint::new());
         self.count(1);
         let distance = normal.dot(corner + *offset);
-        let uncertainty = placed.uncertainty();
+        let shapes = [a.rounding(), b.rounding()];
+        let errors = shapes.map(|shape| shape.error_length.as_f64());
+        let uncertainty = Uncertainty::of_exact_offset(shapes, *offset);
         let error = uncertainty.along(normal) + slack(distance, Scalar::ZERO);
         let mut upper = V::Scalar::infinity();
         // NaN proves nothing.
         if !(distance > error) {
             let epsilon = V::Scalar::EPSILON.as_f64();
-            let errors = [a, b].map(|body| body.rounding().error_length.as_f64());
             let leaning = boxes.leaning(facet, array(normal), errors, epsilon);
             upper = distance + error + Scalar::from_f64(leaning);
             if !(upper < Scalar::ZERO && boxes.is_pierced(facet, -distance.as_f64(), uncertainty.length().as_f64())) {
