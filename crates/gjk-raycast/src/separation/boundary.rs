@@ -1,6 +1,7 @@
 //! The boundary of a polytope that grows point by point.
 
 use alloc::boxed::Box;
+#[cfg(feature = "std")]
 use alloc::vec::Vec;
 use core::any::{Any, TypeId};
 
