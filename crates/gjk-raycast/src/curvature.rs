@@ -46,7 +46,7 @@ pub(crate) fn between<S: Scalar>(h: Symmetric<S>, p: Across<S>, e: Across<S>, g:
 /// Whether the part of `H` across `e` is more than rounding for [`between`].
 pub(crate) fn is_stiff_across<S: Scalar>(h: Symmetric<S>, e: Across<S>) -> bool {
     let across = turned_left(e);
-    dot(across, h.times(across)) > S::EPSILON.sqrt() * dot(e, e) * (h.a + h.d).abs()
+    dot(across, h.times(across)) > S::EPSILON.sqrt() * dot(e, e) * (h.a + h.d)
 }
 
 /// The Hessian of a body swept by a ball, across an axis, at the normal whose part across it is given and whose squared

@@ -67,10 +67,12 @@ impl<V: Vector> ProjectedFace<V> {
             let (p, q) = (at[0].0, at[1].0);
             return p.min(q) < -moved && p.max(q) > moved;
         }
-        // The product of the distance and the side, and a bound on the side.
+        // The product of the distance and the side, and what it has to exceed: the same for `moved`, with a bound on the
+        // side, and the rounding of the product, which counts for sides that are short beside the corners' distance.
         let sides = [[0, 1], [1, 2], [2, 0]].map(|[i, j]| {
-            let (x, y) = way(at[i], at[j]);
-            [symmetric::cross(at[i], at[j]), moved * (x.abs() + y.abs())]
+            let (p, q, (x, y)) = (at[i], at[j], way(at[i], at[j]));
+            let rounded = V::Scalar::EPSILON * V::Scalar::from_f64(4.0) * ((p.0 * q.1).abs() + (p.1 * q.0).abs());
+            [symmetric::cross(p, q), moved * (x.abs() + y.abs()) + rounded]
         });
         // Of corners in clockwise order, all products are negative.
         sides.iter().all(|[product, least]| product > least) || sides.iter().all(|[product, least]| -*product > *least)

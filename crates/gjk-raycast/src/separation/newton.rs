@@ -6,8 +6,8 @@ use num_traits::Float as _;
 use super::boundary::Boundary;
 use super::cores::{Cores, Vertex, WayOut};
 use crate::SignedDistanceOptions;
-use crate::curvature::{between, is_stiff_across};
-use crate::symmetric::{Across, Symmetric, axes_across, dot};
+use crate::curvature::between;
+use crate::symmetric::{Across, Symmetric, axes_across, dot, turned_left};
 
 /// The largest tangent of an angle to turn by.
 const LARGEST: f64 = 0.5;
@@ -161,8 +161,10 @@ impl<V: Vector> Piece<V> {
             // A vertex is exact.
             FoldSide::Near | FoldSide::Far => zero,
         };
-        let is_stiff = V::DIM == 2 || is_stiff_across(bend, e);
-        let step = is_stiff.then(|| between(bend, p, e, value - other_value + lead))?;
+        // Not `is_stiff_across`: a nearly flat fold has its bottom too, and a bracket without it is many times as wide.
+        let across = turned_left(e);
+        let has_bottom = V::DIM == 2 || dot(across, bend.times(across)) > zero;
+        let step = has_bottom.then(|| between(bend, p, e, value - other_value + lead))?;
         turned(self.n, self.across, step)
     }
 
