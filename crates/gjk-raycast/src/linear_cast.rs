@@ -6,7 +6,7 @@ use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
 use crate::cast::{
-    CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, RayOf, cast, certain_closely, settle_start, sliding,
+    CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, cast, certain_closely, settle_start, sliding,
 };
 use crate::distance::distance_of_any;
 use crate::extra::in_static;
@@ -171,7 +171,7 @@ compiled_once! {
         }
         let mut cast = cast(body, whole, &wanted, observer);
         let skin = options.target_distance.max(Scalar::ZERO);
-        settle_start(&mut cast, RayBodies { a, skin, b: RayOf::Shape(b), direction: ray.direction }, &wanted);
+        settle_start(&mut cast, RayBodies { a, skin, b, direction: ray.direction }, &wanted);
         answer(&cast, [a, b], cores, motion, options)
     }
 }

@@ -1,12 +1,12 @@
 //! Where a ray enters a shape: the paper's question, answered by a closed form, by a portal or by its Algorithm 3.
 
-use convex_support::{LineQuery, Scalar, SupportMap, Vector, compiled_once};
+use convex_support::{LineQuery, Point, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
 use crate::body::{CastBody, Measures, Single};
 use crate::cast::{
-    CastHit, CastRay, LocalRay, ObstacleCast, Part, RayBodies, RayOf, cast, certain, certain_closely, is_plain,
-    settle_start, show,
+    CastHit, CastRay, LocalRay, ObstacleCast, Part, RayBodies, cast, certain, certain_closely, is_plain, settle_start,
+    show,
 };
 use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
@@ -128,9 +128,10 @@ compiled_once! {
             return late(body, ray, *options, observer);
         }
         let mut cast = cast(body, CastRay::of(ray, Part::Whole), options, observer);
-        let b = RayOf::Point(ray.source);
-        let bodies = RayBodies { a: shape, skin: Scalar::ZERO, b, direction: ray.direction };
-        settle_start(&mut cast, bodies, options);
+        if let Ok(tip) = Point::new(ray.source) {
+            let b = &WithoutLines(&tip);
+            settle_start(&mut cast, RayBodies { a: shape, skin: Scalar::ZERO, b, direction: ray.direction }, options);
+        }
         answer(cast, ray)
     }
 }

@@ -2,7 +2,7 @@
 
 use convex_support::{Core, Hint, Parallelotope, Rounding, ScalarOf, SupportMap};
 
-/// A shape [without line crossings](WithoutLines), behind a pointer.
+/// A shape behind a pointer, mostly [without line crossings](WithoutLines).
 pub(crate) type Shape<'s, V> = &'s dyn SupportMap<Vector = V>;
 
 /// A shape for distances and depths, which need neither its crossings by lines nor its feature.

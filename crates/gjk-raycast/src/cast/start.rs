@@ -6,7 +6,7 @@
 
 use convex_support::numerics::bound::{raised, roundings};
 use convex_support::numerics::twofold::dot_minus;
-use convex_support::{Point, Posed, Rounded, Scalar, Vector};
+use convex_support::{Posed, Rounded, Scalar, Vector};
 use num_traits::Float;
 
 use super::{CastHit, ObstacleCast};
@@ -21,15 +21,9 @@ pub(crate) struct RayBodies<'s, V: Vector> {
     /// The target, which is swept by a ball, its skin.
     pub(crate) a: Shape<'s, V>,
     pub(crate) skin: V::Scalar,
-    /// The shape or point whose motion is the ray.
-    pub(crate) b: RayOf<'s, V>,
+    /// The shape, or the point at the source, whose motion is the ray.
+    pub(crate) b: Shape<'s, V>,
     pub(crate) direction: V,
-}
-
-/// What moves along a ray: a shape, or the point at the ray's source.
-pub(crate) enum RayOf<'s, V: Vector> {
-    Shape(Shape<'s, V>),
-    Point(V),
 }
 
 /// Decides about a hit that may be at the source, or elsewhere without a certain bound, or about a search that
@@ -56,16 +50,6 @@ pub(super) type SettleFn<V> = fn(&mut ObstacleCast<V>, RayBodies<'_, V>, &RayCas
 pub(super) fn settle<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodies<'_, V>, options: &RayCastOptions<V>) {
     let RayBodies { a, skin, b, direction } = bodies;
     let Ok(a) = Rounded::new(a, skin) else { return };
-    let (point, source);
-    let b: Shape<'_, V> = match b {
-        RayOf::Shape(b) => b,
-        RayOf::Point(at) => {
-            let Ok(at) = Point::new(at) else { return };
-            point = at;
-            source = WithoutLines(&point);
-            &source
-        }
-    };
     let shapes = [&WithoutLines(&a) as Shape<'_, V>, b];
     let mut looks = Looks { iterations: 0, max_iterations: options.max_iterations - cast.iterations };
     if cast.is_to_be_settled() {

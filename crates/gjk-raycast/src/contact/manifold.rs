@@ -8,9 +8,10 @@ use super::clip::{Clipped, ClippedCorners, clip};
 use super::outline::{ContactPart, ContactPlane, Outline, ROOM};
 use super::reduction::{Candidate, Rank, WORTHWHILE, reduced};
 use super::result::MAX_POINTS;
-use super::surface::{MAX_SUPPORT_POINTS, Side, Surface};
+use super::surface::{MAX_SUPPORT_POINTS, Side};
 use super::{Contact, ContactPoint};
 use crate::SignedDistance;
+use crate::shape::Shape;
 use crate::symmetric::{Across, axes_across, cross, dot, way};
 
 /// How near a point is to a corner of a shape's feature if it counts as the corner, as a part of the smaller shape's
@@ -69,7 +70,7 @@ fn single<V: Vector>(answer: &SignedDistance<V>) -> Contact<V> {
 
 compiled_once! {
     fn by_clipping<V>(
-        shapes: [&dyn Surface<V>; 2],
+        shapes: [Shape<'_, V>; 2],
         answer: &SignedDistance<V>,
         within: V::Scalar,
         last: &[ContactPoint<V>],
@@ -81,7 +82,7 @@ compiled_once! {
 /// [`manifold`] behind pointers. It is computed for the shapes in the order in which the normal points to one side of
 /// space, so that it is the same, to the last bit, in either order of the call.
 fn between<V: Vector>(
-    [a, b]: [&dyn Surface<V>; 2],
+    [a, b]: [Shape<'_, V>; 2],
     answer: &SignedDistance<V>,
     within: V::Scalar,
     last: &[ContactPoint<V>],
@@ -96,20 +97,20 @@ fn between<V: Vector>(
     let half: V::Scalar = Scalar::from_f64(0.5);
     let origin = answer.point_a * half + answer.point_b * half;
     let across = axes_across(normal);
-    let (core_a, core_b) = (a.parts(), b.parts());
+    let (core_a, core_b) = (a.core(), b.core());
     let size = core_a.size().min(core_b.size());
     let reach = Reach::new(answer, within, size);
     let level = answer.signed_distance * -half;
     // The closest points may be shifted against each other by the uncertainty of the normal.
     let levels = [level, level + (answer.upper - answer.lower)];
-    let side = |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, levels);
+    let side = |shape, core, normal| Side::new(shape, core, ContactPlane { normal, across, origin }, levels);
     let sides = [&mut side(a, &core_a, -normal), &mut side(b, &core_b, normal)];
     Facing { sides, reach, last }.contact(answer, [level, level])
 }
 
 compiled_once! {
     fn by_plane<V>(
-        shape: &dyn Surface<V>,
+        shape: Shape<'_, V>,
         answer: &SignedDistance<V>,
         within: V::Scalar,
         last: &[ContactPoint<V>],
@@ -117,7 +118,7 @@ compiled_once! {
         let (normal, origin) = (answer.normal, answer.point_b);
         let across = axes_across(normal);
         let plane = |normal| ContactPlane { normal, across, origin };
-        let core = shape.parts();
+        let core = shape.core();
         let reach = Reach::new(answer, within, core.size());
         let heights = [-answer.signed_distance, -answer.lower];
         let sides = [&mut Side::new(shape, &core, plane(-normal), heights), &mut Side::flat(plane(normal))];

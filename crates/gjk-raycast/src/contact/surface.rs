@@ -1,11 +1,12 @@
 //! The height of the surface of a shape over a place in the plane of contact.
 
-use convex_support::{CertainCrossing, Core, Feature, Hint, LineQuery, Scalar, SupportMap, Vector};
+use convex_support::{CertainCrossing, Core, Feature, Hint, LineQuery, Scalar, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::outline::{ContactPlane, Corner, Outline, Tangent, spanned, spread, wrap};
 use crate::curvature::share_of_second;
+use crate::shape::Shape;
 use crate::symmetric::{Across, cross, dot, way};
 
 /// A measured length along a normal, or a speed along it, and a bound on its error.
@@ -35,37 +36,9 @@ const KNOWN: usize = 24;
 /// The slope beyond which a side of a shape is not visible.
 const STEEP: f64 = 4.0;
 
-/// The queries of a shape that a manifold needs. Behind a pointer, so that the rest is compiled once.
-pub(crate) trait Surface<V: Vector> {
-    fn parts(&self) -> Core<V>;
-    fn feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>);
-    /// The point of the core farthest along a direction.
-    fn farthest(&self, direction: V) -> V;
-    /// Where a line certainly enters the shape.
-    fn crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>>;
-}
-
-impl<S: SupportMap + ?Sized> Surface<S::Vector> for &S {
-    fn parts(&self) -> Core<S::Vector> {
-        self.core()
-    }
-
-    fn feature(&self, direction: S::Vector, slab: <S::Vector as Vector>::Scalar, feature: &mut Feature<S::Vector>) {
-        self.core_support_feature(direction, slab, feature);
-    }
-
-    fn farthest(&self, direction: S::Vector) -> S::Vector {
-        self.core_support(direction, &mut Hint::new())
-    }
-
-    fn crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
-        self.certain_crossing(line)
-    }
-}
-
 /// A shape seen along the normal of contact.
 pub(super) struct Side<'s, V: Vector> {
-    surface: Option<&'s dyn Surface<V>>,
+    shape: Option<Shape<'s, V>>,
     /// The plane of contact, with the normal out of this shape. Heights over it are levels.
     pub(super) plane: ContactPlane<V>,
     /// Where the shape's origin is from that of the plane.
@@ -87,7 +60,7 @@ impl<'s, V: Vector> Side<'s, V> {
     /// A shape of which nothing has been [seen](Self::see) yet. A side is large, and better made in place.
     #[inline(always)]
     pub(super) fn new(
-        surface: &'s dyn Surface<V>,
+        shape: Shape<'s, V>,
         core: &Core<V>,
         plane: ContactPlane<V>,
         [reach, top]: [V::Scalar; 2],
@@ -95,7 +68,7 @@ impl<'s, V: Vector> Side<'s, V> {
         let from = core.origin - plane.origin;
         let noise = (from.norm() + core.size()) * (V::Scalar::EPSILON * V::Scalar::from_f64(16.0));
         let (radius, flat) = (core.radius, None);
-        Self { surface: Some(surface), plane, from, radius, reach, top, flat, noise, ..Self::flat(plane) }
+        Self { shape: Some(shape), plane, from, radius, reach, top, flat, noise, ..Self::flat(plane) }
     }
 
     /// A half-space bounded by the plane.
@@ -104,7 +77,7 @@ impl<'s, V: Vector> Side<'s, V> {
         let zero = V::Scalar::ZERO;
         let at = (zero, zero);
         Self {
-            surface: None,
+            shape: None,
             plane,
             from: V::ZERO,
             radius: zero,
@@ -120,9 +93,9 @@ impl<'s, V: Vector> Side<'s, V> {
     /// Draws the outline of the points of the shape in a slab. Points beyond a side that is nearly along the normal are
     /// not visible: both faces of a thin plate may be in the slab.
     pub(super) fn see(&mut self, slab: V::Scalar) {
-        let Some(surface) = self.surface else { return };
+        let Some(shape) = self.shape else { return };
         let mut feature = Feature::new();
-        surface.feature(self.plane.normal, slab, &mut feature);
+        shape.core_support_feature(self.plane.normal, slab, &mut feature);
         let swept = self.from + self.plane.normal * self.radius;
         let seen = |(&point, &id): (&V, &u32)| self.plane.corner(swept + point, id);
         self.known.extend(feature.points().iter().zip(feature.ids()).map(seen));
@@ -165,7 +138,7 @@ impl<'s, V: Vector> Side<'s, V> {
     }
 
     fn farthest(&self, direction: V) -> Option<Corner<V::Scalar>> {
-        let mut point = self.from + self.surface?.farthest(direction);
+        let mut point = self.from + self.shape?.core_support(direction, &mut Hint::new());
         if self.radius > V::Scalar::ZERO {
             point += direction.unit()? * self.radius;
         }
@@ -200,7 +173,7 @@ impl<'s, V: Vector> Side<'s, V> {
         let noise = self.noise;
         let is_known = |error| error * (V::Scalar::EPSILON.sqrt() * V::Scalar::from_f64(16.0)) <= noise;
         let line = LineQuery::new(self.plane.point(at, V::Scalar::ZERO), -self.plane.normal);
-        match self.surface?.crossing(line.within(noise)) {
+        match self.shape?.certain_crossing(line.within(noise)) {
             Some(CertainCrossing::Misses(_)) => return None,
             Some(CertainCrossing::Enters { entry, bounds, .. }) if is_known(entry - bounds[0]) => {
                 return Some(Level { value: -entry, error: entry - bounds[0] });

@@ -4,7 +4,7 @@ use convex_support::numerics::elementary::sin_cos;
 use convex_support::{AngularVelocity, Matrix, MotionGradient, Scalar, Vector};
 
 use super::ClosestFeatures;
-use crate::{Displacement, Distance, Impact, Ray, RayHit, RigidMotion, SignedDistance, Trajectory};
+use crate::{Displacement, Distance, Impact, Ray, RayHit, RigidMotion, SignedDistance, Trajectory, axial};
 
 /// The derivatives of a distance by the motion of either body and by their radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -334,13 +334,10 @@ fn pulled_back<V: Vector>(
     if V::DIM == 2 {
         return moment;
     }
-    let theta = velocity.scaled(time);
-    let cross = theta.cross_matrix();
-    let angle = V::from_fn(|i| theta.coordinate(i)).norm();
-    let m = V::from_fn(|i| moment.coordinate(i));
-    let once = cross * m;
-    let [first, second] = jacobian_coefficients(angle);
-    let pulled = m - once * first + cross * once * second;
+    let (theta, m) = (axial::vector::<V>(velocity.scaled(time)), axial::vector::<V>(moment));
+    let once = axial::turning(theta, m);
+    let [first, second] = jacobian_coefficients(theta.norm());
+    let pulled = m - once * first + axial::turning(theta, once) * second;
     V::AngularVelocity::from_coordinates(|i| pulled.get(i))
 }
 
