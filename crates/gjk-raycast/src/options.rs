@@ -259,10 +259,9 @@ impl<V: Vector> RayCastOptions<V> {
     /// which all options are lean has two fifths of the code for rays.
     ///
     /// The faster search of [`CastMethod::Portal`] is left out. It is then the same as [`Gjk`](CastMethod::Gjk) where
-    /// no closed form is certain: a search takes two to five times as long, and its bracket may be wider. A second
-    /// measurement is left out too: of a source within rounding of the target, and of a hit next to an edge or a graze.
-    /// There the answer may be a hit that is not [certain](crate::RayCast::is_certain), or undecided, where the default
-    /// options decide.
+    /// no closed form is certain: a search takes two to five times as long, and its bracket may be wider. The second
+    /// measurement of a source within rounding of the target is left out too: there the answer may be a hit that is not
+    /// [certain](crate::RayCast::is_certain), or undecided, where the default options decide.
     #[must_use]
     pub fn lean() -> Self {
         Self {

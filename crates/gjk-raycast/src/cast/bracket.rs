@@ -108,8 +108,6 @@ enum EntryProof {
     BySlope,
     /// An edge, or a graze, may be within an error.
     InDoubt,
-    /// The outline of the body, projected along the ray, is within an error: the ray may miss.
-    AtOutline,
 }
 
 impl<'a, V: Vector> Bracket<'a, V> {
@@ -198,7 +196,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         match self.entry {
             EntryProof::Certain => false,
             EntryProof::BySlope => !self.enters_ball(),
-            EntryProof::InDoubt | EntryProof::AtOutline => true,
+            EntryProof::InDoubt => true,
         }
     }
 
@@ -217,16 +215,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// Records that an edge, or a graze, may be within an error of where the ray enters.
     pub(super) fn doubt_entry(&mut self) {
         self.entry = EntryProof::InDoubt;
-    }
-
-    /// Records that the outline of the body is within an error of the ray.
-    pub(super) fn touch_outline(&mut self) {
-        self.entry = EntryProof::AtOutline;
-    }
-
-    /// Whether another measurement, of the surface near the hit alone, may prove that the ray is in the body.
-    pub(super) fn is_worth_another_look(&self) -> bool {
-        self.is_entry_open() && self.entry != EntryProof::AtOutline
     }
 
     /// Moves the upper bound to where the ray is certainly in the body.

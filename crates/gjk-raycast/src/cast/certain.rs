@@ -163,6 +163,6 @@ impl<V: Vector> ObstacleCast<V> {
             let spot = (ray.source - origin) + ray.direction * lambda;
             CastHit { lambda, normal, spot, witness: body.witness(spot - normal.unwrap_or_default() * radius) }
         });
-        Self { outcome, lower, upper, status, iterations, is_open: false, scale: Scalar::ONE }
+        Self { outcome, lower, upper, status, iterations, scale: Scalar::ONE }
     }
 }

@@ -157,8 +157,6 @@ pub(crate) struct ObstacleCast<V: Vector> {
     pub(crate) upper: V::Scalar,
     pub(crate) status: Status,
     pub(crate) iterations: usize,
-    /// Whether the reported hit may be a miss: then only a second measurement can tell where the ray enters.
-    pub(crate) is_open: bool,
     /// The unit of the hit spot and of the witness.
     pub(crate) scale: V::Scalar,
 }
@@ -205,7 +203,6 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
             (Outcome::Undecided, bracket.bounds(None), status)
         }
     };
-    let is_open = matches!(outcome, Outcome::Hit(_)) && bracket.is_worth_another_look();
     let (iterations, scale) = (bracket.iterations, bracket.scale);
-    ObstacleCast { outcome, lower, upper, status, iterations, scale, is_open }
+    ObstacleCast { outcome, lower, upper, status, iterations, scale }
 }

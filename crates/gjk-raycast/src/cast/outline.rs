@@ -14,8 +14,7 @@
 //!
 //! If the outline itself is within an error of the line, the ray may miss.
 //!
-//! Without these bounds, a second measurement of the bodies after the hit would take 33 support points instead of 7
-//! in the plane, and more hits would have no bound.
+//! By the known points alone, without support points across the line, more hits would have no bound.
 
 use convex_support::{Scalar, Vector};
 
@@ -45,8 +44,6 @@ pub(super) fn bound_entry<V: Vector>(bracket: &mut Bracket<'_, V>) {
     let Some(polygon) = known.filter(is_near).or_else(|| frame.look_around(bracket, error)) else { return };
     if let Some(latest) = polygon.latest_entry(mu, error) {
         bracket.enter_for_certain(latest);
-    } else if polygon.touches_outline(error) {
-        bracket.touch_outline();
     }
 }
 
@@ -70,8 +67,8 @@ impl<V: Vector> RayFrame<V> {
         polygon
     }
 
-    /// A wide polygon of support points across the line, or one with a side that the outline is known to be near;
-    /// `None` if there are no more support points.
+    /// A wide polygon of support points across the line; `None` if the outline is known to be near the line, or there
+    /// are no more support points.
     fn look_around(&self, bracket: &mut Bracket<'_, V>, error: V::Scalar) -> Option<Polygon<V::Scalar>> {
         let radius = bracket.radius;
         let mut support = |toward: Across<V::Scalar>| {
@@ -88,8 +85,9 @@ impl<V: Vector> RayFrame<V> {
         polygon.insert(0, right);
         polygon.insert(1, left);
         while polygon.len < MAX_CORNERS {
-            if polygon.touches_outline(error) {
-                break;
+            // No further point surrounds the line there.
+            if polygon.sides().iter().any(|side| side.is_outermost && side.distance <= error + error) {
+                return None;
             }
             let wide = V::Scalar::from_f64(WIDE);
             let Some(i) = polygon.nearest_of(|side| !side.is_outermost && side.distance < wide) else { break };
@@ -180,11 +178,6 @@ impl<S: Scalar> Polygon<S> {
     fn nearest_of(&self, is_meant: impl Fn(&PolygonSide<S>) -> bool) -> Option<usize> {
         let meant = (0..self.len).filter(|&i| is_meant(&self.sides[i]));
         meant.reduce(|i, j| if self.sides[j].distance < self.sides[i].distance { j } else { i })
-    }
-
-    /// Whether the outline is known to be within two errors of the line.
-    fn touches_outline(&self, error: S) -> bool {
-        self.sides().iter().any(|side| side.is_outermost && side.distance <= error + error)
     }
 
     /// Where the line is in the body, at the latest, given a point of the body at `mu` to within an error; `None` if

@@ -26,15 +26,14 @@ pub(crate) struct RayBodies<'s, V: Vector> {
     pub(crate) direction: V,
 }
 
-/// Decides about a hit that may be at the source, or elsewhere without a certain bound, or about a search that
-/// stalled before it left the source.
+/// Decides about a hit that may be at the source, or about a search that stalled before it left the source.
 #[inline(always)]
 pub(crate) fn settle_start<V: Vector>(
     cast: &mut ObstacleCast<V>,
     bodies: RayBodies<'_, V>,
     options: &RayCastOptions<V>,
 ) {
-    if (cast.is_open || cast.is_to_be_settled())
+    if cast.is_to_be_settled()
         && cast.iterations < options.max_iterations
         && let Some(extra) = options.extra.get()
     {
@@ -44,35 +43,16 @@ pub(crate) fn settle_start<V: Vector>(
 
 pub(super) type SettleFn<V> = fn(&mut ObstacleCast<V>, RayBodies<'_, V>, &RayCastOptions<V>);
 
-/// The second measurement for a cast whose hit may be at the source, or elsewhere without a certain bound.
+/// Decides by the measured gap of the bodies where the cast begins.
 #[cold]
 #[inline(never)]
 pub(super) fn settle<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodies<'_, V>, options: &RayCastOptions<V>) {
     let RayBodies { a, skin, b, direction } = bodies;
     let Ok(a) = Rounded::new(a, skin) else { return };
-    let shapes = [&WithoutLines(&a) as Shape<'_, V>, b];
-    let mut looks = Looks { iterations: 0, max_iterations: options.max_iterations - cast.iterations };
-    if cast.is_to_be_settled() {
-        settle_at_start(cast, shapes, direction, options.max_lambda, &mut looks);
-    } else if let Outcome::Hit(CastHit { lambda, .. }) = cast.outcome
-        && let Some(latest) = latest_after_hit(shapes, direction, lambda, &mut looks)
-    {
-        cast.upper = cast.upper.min(latest);
-    }
-    cast.iterations += looks.iterations;
-}
-
-/// Decides by the measured gap of the bodies where the cast begins.
-fn settle_at_start<V: Vector>(
-    cast: &mut ObstacleCast<V>,
-    [a, b]: [Shape<'_, V>; 2],
-    direction: V,
-    max_lambda: V::Scalar,
-    looks: &mut Looks,
-) {
-    let zero = V::Scalar::ZERO;
-    let Some(near) = near_contact_of(a, b, looks.max_iterations) else { return };
-    looks.iterations = near.iterations;
+    let (zero, a) = (V::Scalar::ZERO, WithoutLines(&a));
+    let max_iterations = options.max_iterations - cast.iterations;
+    let Some(near) = near_contact_of(&a, b, max_iterations) else { return };
+    let looks = &mut Looks { iterations: near.iterations, max_iterations };
     let spot = Spot { source: -near.frame.offset, points: near.points, scale: near.frame.scale };
     // The bodies are apart by `gap − λ·n·d` along the normal: the sign of the product is exact. The axis is the unit
     // vector from the target to the source.
@@ -81,7 +61,7 @@ fn settle_at_start<V: Vector>(
     if !near.is_separated() {
         // The source is in the target, to its own error, or nothing is known.
         if near.overlap().is_some() {
-            cast.touch(latest_entry([a, b], direction, closing, &near, looks), spot);
+            cast.touch(latest_entry([&a, b], direction, closing, &near, looks), spot);
         }
     } else if closing <= zero {
         cast.miss(axis);
@@ -90,17 +70,18 @@ fn settle_at_start<V: Vector>(
         let at = |gap: V::Scalar| gap * near.frame.scale / closing;
         let (lambda, lower) = (at(near.gap), at(near.lower));
         let lower = lower - roundings(8.0, lower);
-        let entry = entry([a, b], direction, closing, (&near, zero), looks);
+        let entry = entry([&a, b], direction, closing, &near, looks);
         // The returned λ decides whether a hit at the very end of the ray counts.
-        if lambda > max_lambda {
+        if lambda > options.max_lambda {
             cast.miss(axis);
-            if lower <= max_lambda {
+            if lower <= options.max_lambda {
                 cast.lower = lower;
             }
         } else {
             cast.enter(lambda, axis, lower, entry, spot);
         }
     }
+    cast.iterations += looks.iterations;
 }
 
 /// The place of the source relative to the target's origin, the closest points of both, and the unit of these
@@ -129,18 +110,17 @@ fn latest_entry<V: Vector>(
     let is_at_plane = near.gap.abs() <= near.upper;
     let speed = direction.norm();
     let speed = if is_at_plane && closing > sliding(speed) { closing } else { speed };
-    entry(shapes, direction, speed, (near, zero), looks).certain()
+    entry(shapes, direction, speed, near, looks).certain()
 }
 
-/// The vector from a point of the target to the source, in the world's unit, if either may be moved by `astray`.
-fn from_contact<V: Vector>(near: &NearContact<V>, astray: V::Scalar) -> FromContact<V> {
+/// The vector from a point of the target to the source, in the world's unit.
+fn from_contact<V: Vector>(near: &NearContact<V>) -> FromContact<V> {
     let &NearContact { normal: n, lower, upper, frame: Frame { scale, .. }, .. } = near;
     let upper = upper.max(V::Scalar::ZERO);
     // Of a vector no longer than `upper`, this is left across a unit vector along which it is at least `lower`.
     let across = if near.is_separated() { raised(((upper - lower) * (upper + lower)).sqrt()) } else { upper };
     let along = if near.is_separated() { upper } else { V::Scalar::ZERO };
-    let in_world = |length: V::Scalar| length * scale + astray;
-    FromContact { n, along: in_world(along), across: in_world(across), length: in_world(upper) }
+    FromContact { n, along: along * scale, across: across * scale, length: upper * scale }
 }
 
 /// Closing speeds up to this may be rounding: a normal is known to a few ε.
@@ -195,8 +175,7 @@ const DEEP: f64 = 0.25;
 const ASIDE: f64 = 4.0;
 const AT_EDGE: f64 = 1.0;
 
-/// Where a ray enters whose source is near the target, and which closes in with a `speed`. The source and what is seen
-/// from there may be moved by `astray`.
+/// Where a ray enters whose source is near the target, and which closes in with a `speed`.
 ///
 /// Let `e` be the vector from a point of the target to the source, and the target contain, about the ray after `λ`,
 /// that vector `k` times: a point of the target is opposite to the first one, and the segment between both crosses the
@@ -208,11 +187,11 @@ fn entry<V: Vector>(
     [a, b]: [Shape<'_, V>; 2],
     direction: V,
     speed: V::Scalar,
-    (near, astray): (&NearContact<V>, V::Scalar),
+    near: &NearContact<V>,
     looks: &mut Looks,
 ) -> LatestEntry<V::Scalar> {
     let (zero, number) = (V::Scalar::ZERO, V::Scalar::from_f64);
-    let from = from_contact(near, astray);
+    let from = from_contact(near);
     let size = a.core().size() + b.core().size();
     let gap = from.length;
     // Bodies that touch have their origins no farther apart than their sizes.
@@ -228,7 +207,7 @@ fn entry<V: Vector>(
         let fall = lambda * speed;
         let aside = number(if dull > 0 { AT_EDGE } else { ASIDE });
         // The step is rounded, coordinate by coordinate.
-        let rounded = roundings(4.0, step.norm()) + astray;
+        let rounded = roundings(4.0, step.norm());
         let there = look_after([a, &moved], &from, [aside * fall, rounded], left);
         looks.iterations += there.iterations;
         if there.times > zero {
@@ -259,27 +238,6 @@ fn entry<V: Vector>(
         }
     }
     best
-}
-
-/// The λ of a hit away from the source, at the latest, by the measured gap of the bodies there, if this is less than
-/// the slope at one plane gives: the error of the bodies is so large that the next edge may be within it.
-fn latest_after_hit<V: Vector>(
-    [a, b]: [Shape<'_, V>; 2],
-    direction: V,
-    lambda: V::Scalar,
-    looks: &mut Looks,
-) -> Option<V::Scalar> {
-    let step = direction * lambda;
-    let there = Posed::translated(b, step).ok()?;
-    let there = WithoutLines(&there);
-    let near = near_contact_of(a, &there, looks.max_iterations)?;
-    looks.iterations = near.iterations;
-    // The step and the direction are rounded, coordinate by coordinate.
-    let astray = roundings(8.0, step.norm());
-    let closing = near.normal.dot(direction);
-    let speed = if closing > V::Scalar::ZERO { closing } else { direction.norm() };
-    let latest = lambda + entry([a, &there], direction, speed, (&near, astray), looks).certain();
-    Some(latest + roundings(4.0, latest))
 }
 
 impl<V: Vector> ObstacleCast<V> {
