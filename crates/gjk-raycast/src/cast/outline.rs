@@ -22,8 +22,9 @@ use super::bracket::Bracket;
 use super::ray_frame::RayFrame;
 use crate::symmetric::{Across, cross, dot, way};
 
-/// The most corners of a polygon.
-const MAX_CORNERS: usize = 8;
+/// The most corners of a polygon. Each further one near the line quarters how far the outline is beyond its side: with
+/// eight, a line that enters by a ten-thousandth of the size might have no bound, with twelve a millionth is enough.
+const MAX_CORNERS: usize = 12;
 
 /// How far from the line its sides are to be, in the bracket's unit of length.
 const WIDE: f64 = 0.0625;
