@@ -20,8 +20,12 @@ pub mod paths;
 pub mod plot;
 pub mod prove;
 pub mod query;
+pub mod table;
 pub mod validate;
 pub mod wire;
+
+/// The folder of the embedded suite: what is validated where no files are named.
+pub const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/suite");
 
 /// Compiles and runs the examples of the workspace's README: no library sees all four crates.
 #[cfg(doctest)]

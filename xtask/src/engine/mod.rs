@@ -421,8 +421,7 @@ mod tests {
     /// format is damaged, and that must be an error, and renamed, and that must be an unknown field.
     #[test]
     fn every_field_that_is_known_is_read() {
-        let text =
-            std::fs::read_to_string(format!("{}/by_hand.jsonl", crate::validate::EMBEDDED)).expect("it is there");
+        let text = std::fs::read_to_string(format!("{}/by_hand.jsonl", crate::EMBEDDED)).expect("it is there");
         let mut seen = 0;
         for line in text.lines().filter(|line| line.starts_with('{')) {
             let mut whole: serde_json::Value = serde_json::from_str(line).expect("JSON");

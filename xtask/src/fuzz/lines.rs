@@ -9,9 +9,9 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 use super::Verdict;
+use crate::EMBEDDED;
 use crate::mesh::Meshes;
 use crate::query;
-use crate::validate::EMBEDDED;
 use workloads::rng::Rng;
 
 /// Longer lines are left out: most of the time would go into a few of them.

@@ -6,8 +6,8 @@
 
 use crate::engine;
 use crate::mesh::Meshes;
-use crate::validate::as_read;
 use crate::wire::answer::Line;
+use crate::wire::answer::as_read;
 use crate::wire::fields::{Dimension, Object, Written};
 use crate::wire::names::Names;
 use crate::wire::shape::{Shape, Space};

@@ -4,8 +4,7 @@ use std::fs;
 
 use workloads::note;
 
-use super::questions::SETS;
-use super::table::asked_as;
+use super::questions::{SETS, asked_as};
 use crate::plot::{Mark, Panel, Panels};
 
 /// What one answers to one kind of questions: the row of a table.

@@ -6,12 +6,12 @@ use std::io::{self, Write as _};
 use std::path::Path;
 
 use crate::plot::duration;
-use crate::validate::summary::quantile;
+use crate::table::quantile;
 use workloads::note;
 use workloads::provenance::provenance;
 
 use super::figure::{self, Point};
-use super::questions::SETS;
+use super::questions::{SETS, asked_as};
 use super::verdict::{Outcome, Verdict};
 use super::witnesses::Witness;
 
@@ -221,12 +221,6 @@ pub fn markdown(csv: &str) -> String {
         text.push('\n');
     }
     text
-}
-
-/// A set of questions as a reader says it.
-#[must_use]
-pub fn asked_as(set: &str) -> &str {
-    if set == "distance of 1e-6" { "near contact" } else { set }
 }
 
 #[cfg(test)]

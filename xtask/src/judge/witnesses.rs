@@ -6,9 +6,9 @@ use std::path::Path;
 
 use crate::engine;
 use crate::mesh::Meshes;
-use crate::validate::as_read;
 use crate::validate::score::scalar_of;
 use crate::wire::answer::Line;
+use crate::wire::answer::as_read;
 use crate::wire::fields::Object;
 use serde_json::{Value, json};
 

@@ -5,12 +5,14 @@ use convex_support::{SupportMap, Vector};
 use gjk_raycast::{Body as SceneBody, HalfSpace};
 use serde_json::{Value, json};
 
-use super::sheet::ASPECT;
 use crate::mesh::Meshes;
 use crate::wire::body::Body;
 use crate::wire::error::Problem;
 use crate::wire::fields::{Dimension, Object, Written};
 use crate::wire::shape::{Solid, Space};
+
+/// By how much a picture is wider than high.
+pub(super) const ASPECT: f64 = 4.0 / 3.0;
 
 /// A point of the picture, in the units of the pose.
 pub(super) type Flat = [f64; 2];

@@ -25,10 +25,10 @@ use crate::engine;
 use crate::mesh::Meshes;
 use crate::prove::judge_line;
 use crate::query::certified;
-use crate::validate::as_read;
+use crate::table::aligned;
 use crate::validate::score::{Verdict, judge, scalar_of};
-use crate::validate::summary::aligned;
 use crate::wire::answer::Line;
+use crate::wire::answer::as_read;
 use crate::wire::fields::Object;
 use crate::wire::json;
 

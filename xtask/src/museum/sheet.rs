@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::drawing::{Drawing, Flat, Role, cut};
+use super::drawing::{ASPECT, Drawing, Flat, Role, cut};
 use crate::plot::escape;
 
 /// One cell of a sheet.
@@ -12,10 +12,9 @@ pub(super) struct Cell {
     pub(super) drawing: Drawing,
 }
 
-/// A picture of a cell: how large it is, and by how much it is wider than high.
+/// How large the picture of a cell is.
 const WIDTH: f64 = 176.0;
-const HEIGHT: f64 = 132.0;
-pub(super) const ASPECT: f64 = WIDTH / HEIGHT;
+const HEIGHT: f64 = WIDTH / ASPECT;
 /// Between the cells, and below each for two lines of text.
 const GAP: f64 = 10.0;
 const TEXT: f64 = 44.0;

@@ -7,9 +7,9 @@ use workloads::rng::Rng;
 
 use super::random::{PLANES, ROBOTS, query};
 use super::{Counts, judge_line};
+use crate::EMBEDDED;
 use crate::mesh::Meshes;
 use crate::query::certified;
-use crate::validate::EMBEDDED;
 
 fn meshes() -> Meshes {
     Meshes::relative_to(EMBEDDED)

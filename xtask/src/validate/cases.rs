@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use super::Record;
 use super::page::{Block, Figure, Row, Section, Table, error};
-use super::summary::{Group, HEADERS, by_file, by_query, called, quantile};
+use super::score::called;
+use super::summary::{Group, HEADERS, by_file, by_query};
 use crate::plot::{Plot, Scale, Series};
+use crate::table::quantile;
 
 /// Errors below this are drawn here: it is less than half an ulp.
 const FLOOR: f64 = 1e-17;

@@ -3,10 +3,10 @@
 use super::Record;
 use super::page::Drawing;
 use super::progress::progress;
-use super::summary::quantile;
 use crate::judge::figure::{OF_ELLIPSOIDS, Point, is_ours, panels, recorded};
 use crate::judge::{judged, proved, questions, witnesses};
 use crate::plot::duration;
+use crate::table::quantile;
 
 /// How many questions of each kind are asked of each shape or pair of shapes.
 const EACH: usize = 6;

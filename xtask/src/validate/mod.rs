@@ -21,15 +21,13 @@ use serde_json::Value;
 use self::page::Section;
 pub use self::progress::{begin as begin_progress, end as end_progress, progress};
 use self::score::Verdict;
+use crate::EMBEDDED;
 use crate::engine;
 use crate::mesh::Meshes;
-use crate::wire::answer::Line;
+use crate::wire::answer::{Line, as_read};
 use crate::wire::error::Problem;
 use crate::wire::fields::Object;
 use crate::wire::json;
-
-/// What is validated where no files are named.
-pub const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/suite");
 
 /// One case and what became of it.
 #[derive(Clone, Debug)]
@@ -315,9 +313,3 @@ fn iterations(value: &Value) -> Option<u64> {
 
 /// How long a question is timed: long enough to be told from the clock, short enough for thousands of questions.
 const MICROSECONDS: u64 = 100;
-
-/// The answer as whoever reads the line of output gets it.
-#[must_use]
-pub fn as_read(line: Line) -> Object {
-    serde_json::to_vec(&line).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default()
-}

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use super::Record;
 use super::headline::Headline;
 use super::page::{Section, prose, quoted};
-use super::summary::{called, total};
+use super::score::called;
+use super::summary::total;
 use crate::plot::escape;
 use workloads::provenance::provenance;
 

@@ -19,6 +19,26 @@ pub fn scalar_of(query: &str) -> Option<&'static str> {
     })
 }
 
+/// A query as a reader says it.
+#[must_use]
+pub fn called(query: &str) -> String {
+    match query {
+        "intersect" => "overlap",
+        "motion_cast" => "turning cast",
+        "margin" => "margin of ellipsoids",
+        "track" => "margin along a motion",
+        "clearance" => "clearance of a robot",
+        "path" => "path of a robot",
+        "none" => "unreadable line",
+        known if scalar_of(known).is_some() || OTHERS.contains(&known) => return known.replace('_', " "),
+        _ => "unknown query",
+    }
+    .to_owned()
+}
+
+/// Queries whose answer is not one number.
+const OTHERS: [&str; 3] = ["contact", "scene", "joint_box"];
+
 /// What became of one case.
 #[derive(Clone, Debug, Default)]
 pub struct Verdict {

@@ -6,9 +6,10 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use super::page::{Block, Row, Section, Table, error};
-use super::summary::{aligned, called, quantile};
+use super::score::called;
 use super::{Record, score};
 use crate::plot::{duration, raised};
+use crate::table::{aligned, quantile};
 
 /// The chapter: a row for every kind of difficulty, and folded one for each of its values.
 #[must_use]

@@ -5,9 +5,10 @@ use std::io::{self, Write};
 
 use super::Record;
 use super::page::error;
-use super::score::scalar_of;
+use super::score::called;
 use super::stiff;
 use crate::plot::duration;
+use crate::table::{aligned, quantile};
 
 /// Counts and quantiles of a group of cases.
 #[derive(Clone, Debug, Default)]
@@ -71,34 +72,6 @@ pub const HEADERS: [&str; 11] = [
     "most steps",
     "median time",
 ];
-
-/// The smallest value that at least the fraction `p` of the values does not exceed.
-pub fn quantile(values: &[f64], p: f64) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let rank = (p * sorted.len() as f64).ceil() as usize;
-    sorted.get(rank.saturating_sub(1)).copied()
-}
-
-/// A query as a reader says it.
-#[must_use]
-pub fn called(query: &str) -> String {
-    match query {
-        "intersect" => "overlap",
-        "motion_cast" => "turning cast",
-        "margin" => "margin of ellipsoids",
-        "track" => "margin along a motion",
-        "clearance" => "clearance of a robot",
-        "path" => "path of a robot",
-        "none" => "unreadable line",
-        known if scalar_of(known).is_some() || OTHERS.contains(&known) => return known.replace('_', " "),
-        _ => "unknown query",
-    }
-    .to_owned()
-}
-
-/// Queries whose answer is not one number.
-const OTHERS: [&str; 3] = ["contact", "scene", "joint_box"];
 
 /// Groups of cases by what `names` calls them.
 pub fn groups<'r>(records: &'r [Record], names: impl Fn(&'r Record) -> Vec<String>) -> BTreeMap<String, Group> {
@@ -168,17 +141,4 @@ fn table(output: &mut impl Write, title: &str, groups: &BTreeMap<String, Group>)
     let headers: Vec<&str> = [title].into_iter().chain(HEADERS).collect();
     let rows = groups.iter().map(|(name, group)| [name.clone()].into_iter().chain(group.columns()).collect());
     aligned(output, &headers, &rows.collect::<Vec<Vec<String>>>(), 1)
-}
-
-/// Writes rows under their headers; the first columns are names and the others numbers.
-pub(crate) fn aligned(output: &mut impl Write, headers: &[&str], rows: &[Vec<String>], names: usize) -> io::Result<()> {
-    let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).chain([headers[k].len()]).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..headers.len()).map(width).collect();
-    let headers = headers.iter().map(|header| (*header).to_owned()).collect();
-    for row in [&headers].into_iter().chain(rows) {
-        let cells = row.iter().zip(&widths).enumerate();
-        let line = cells.map(|(k, (cell, &w))| if k < names { format!("{cell:w$}") } else { format!("{cell:>w$}") });
-        writeln!(output, "{}", line.collect::<Vec<String>>().join("  "))?;
-    }
-    writeln!(output)
 }

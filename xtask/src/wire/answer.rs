@@ -5,6 +5,7 @@ use serde::ser::{Serialize, SerializeMap as _, Serializer};
 use serde_json::Value;
 
 use super::error::Problem;
+use super::fields::Object;
 
 /// A number in the precision of the query, printed with the fewest digits that tell it from its neighbours.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -166,4 +167,10 @@ impl Serialize for Line {
         }
         map.end()
     }
+}
+
+/// The answer as whoever reads the line of output gets it.
+#[must_use]
+pub fn as_read(line: Line) -> Object {
+    serde_json::to_vec(&line).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default()
 }

@@ -55,12 +55,6 @@ pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
 
-/// `2ⁿ`, exact if a number of this type is equal to it.
-#[inline]
-pub fn power_of_two<S: Scalar>(n: i32) -> S {
-    S::from_f64(libm::ldexp(1.0, n))
-}
-
 #[cfg(all(test, feature = "std"))]
 mod tests {
     use super::*;
@@ -86,7 +80,5 @@ mod tests {
             }
             x *= 1.01;
         }
-        assert_eq!(power_of_two::<f64>(-1074), f64::from_bits(1), "the least number");
-        assert_eq!((power_of_two::<f32>(127), power_of_two::<f32>(128)), (2.0f32.powi(127), f32::INFINITY));
     }
 }

@@ -1,6 +1,5 @@
 //! Lengths whose squares would over- or underflow, measured in units of a power of two.
 
-use super::elementary::power_of_two;
 use crate::{Scalar, Vector};
 
 /// Whether a squared length carries full relative precision: it did not overflow, and a coordinate whose square
@@ -22,6 +21,12 @@ pub fn is_moderate<S: Scalar>(x: S) -> bool {
 #[inline]
 pub fn comfortable_unit_of_length<S: Scalar>(largest: S) -> S {
     if is_comfortable(largest * largest) { S::ONE } else { power_of_two_below(largest) }
+}
+
+/// `2ⁿ`, exact if a number of this type is equal to it.
+#[inline]
+pub fn power_of_two<S: Scalar>(n: i32) -> S {
+    S::from_f64(libm::ldexp(1.0, n))
 }
 
 /// The largest power of two that is not above `value`, or the smallest normal one; 1 if `value` is not positive or not
@@ -61,4 +66,15 @@ pub fn scaled<V: Vector>(v: V) -> Option<(V, [V::Scalar; 2])> {
     let half = power_of_two(i32::from(exponent) / 2);
     let rest = power_of_two(i32::from(exponent) - i32::from(exponent) / 2);
     (largest > V::Scalar::ZERO).then(|| (v / half / rest, [half, rest]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_of_two_reach_from_the_least_number_to_beyond_the_greatest() {
+        assert_eq!(power_of_two::<f64>(-1074), f64::from_bits(1), "the least number");
+        assert_eq!((power_of_two::<f32>(127), power_of_two::<f32>(128)), (2.0f32.powi(127), f32::INFINITY));
+    }
 }

@@ -1,11 +1,9 @@
-//! The point of a simplex closest to zero, by testing every face or as asked.
+//! The point of a simplex closest to zero, by testing every face.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::simplex::affine_hull::project;
-#[cfg(feature = "paper")]
-use crate::simplex::paper::{johnson, signed_volumes};
 use crate::simplex::{Face, MAX_POINTS, faces};
 
 /// The point of a simplex closest to zero.
@@ -66,44 +64,6 @@ pub(crate) fn closest_in_face<V: Vector>(points: &[V], face: Face, dimension: us
     let inside = foot.coordinates[..face.len()].iter().all(|&b| b > V::Scalar::ZERO);
     let v = if face.len() > dimension { V::ZERO } else { -foot.across };
     inside.then_some(Closest { v, face, weights: foot.coordinates })
-}
-
-/// How the point of a simplex closest to zero, and the smallest face that contains it, are found.
-///
-/// All variants share the orthogonal projection that computes the point once its face is known, and the back-up for
-/// inconsistent signs; they differ in how they find the face. All but the default need the feature `paper`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum SubAlgorithm {
-    /// The fastest: it tests only the faces with the newest point as a corner, and every face if this leaves a doubt.
-    /// Casts test every face at once.
-    #[default]
-    Regions,
-    /// The most robust: zero is projected on every face, and the nearest of the faces that contain their projection is
-    /// taken.
-    #[cfg(feature = "paper")]
-    NearestFace,
-    /// Johnson's determinants, as in the paper.
-    #[cfg(feature = "paper")]
-    Johnson,
-    /// The signs of volumes, after Montanari, Petrinic and Barbieri.
-    #[cfg(feature = "paper")]
-    SignedVolumes,
-}
-
-impl SubAlgorithm {
-    /// The closest point of the points, in a space of `dimension` dimensions: that of the vectors, or one less for
-    /// points projected along a ray, where only [`nearest_face`] applies.
-    pub(crate) fn closest<V: Vector>(self, points: &[V], dimension: usize) -> Option<Closest<V>> {
-        match self {
-            #[cfg(feature = "paper")]
-            Self::Johnson if dimension == V::DIM => johnson(points, dimension),
-            #[cfg(feature = "paper")]
-            Self::SignedVolumes if dimension == V::DIM => signed_volumes(points, dimension),
-            _ => nearest_face(points, dimension),
-        }
-    }
 }
 
 #[cfg(test)]

@@ -6,14 +6,15 @@ mod closest;
 #[cfg(feature = "paper")]
 mod paper;
 mod regions;
+mod sub_algorithm;
 
 use convex_support::{Scalar, Vector};
 
 use crate::body::PointPair;
 pub(crate) use affine_hull::{AffineHull, project, project_rarely};
-pub use closest::SubAlgorithm;
 pub(crate) use closest::{Closest, nearest_face};
 pub(crate) use regions::{cross, nearest};
+pub use sub_algorithm::SubAlgorithm;
 
 /// The largest number of points of a simplex, in 3D.
 pub(crate) const MAX_POINTS: usize = 4;

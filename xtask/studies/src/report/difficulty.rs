@@ -6,10 +6,11 @@ use serde_json::Value;
 use xtask::engine;
 use xtask::plot::{Plot, Scale, Series};
 use xtask::validate::page::Figure;
+use xtask::validate::score::called;
 use xtask::validate::stiff::{difficulty, difficulty_as_said};
-use xtask::validate::summary::called;
-use xtask::validate::{Case, as_read, progress, score};
+use xtask::validate::{Case, progress, score};
 use xtask::wire::answer::Line;
+use xtask::wire::answer::as_read;
 
 /// Methods beside the default that are shown for comparison.
 const COMPARED: &[(&str, &str)] = &[("margin", "eigen"), ("ray_cast", "iterative")];

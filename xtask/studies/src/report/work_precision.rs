@@ -4,10 +4,11 @@ use serde_json::Value;
 
 use xtask::engine;
 use xtask::plot::{Plot, Scale, Series};
+use xtask::table::quantile;
 use xtask::validate::page::{Block, Figure};
-use xtask::validate::summary::quantile;
-use xtask::validate::{Case, as_read, progress, score};
+use xtask::validate::{Case, progress, score};
 use xtask::wire::answer::Line;
+use xtask::wire::answer::as_read;
 use xtask::wire::fields::Object;
 
 /// A query, the knob that trades time for error, and what to try.

@@ -10,7 +10,7 @@
 //! the portal's own plane. Of two pieces, both have to be found in turn, though a plane finds only the one that
 //! extends farther; so the plane is moved by a little more than the error of the older model to its side.
 
-use convex_support::numerics::elementary::power_of_two;
+use convex_support::numerics::range::power_of_two;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 

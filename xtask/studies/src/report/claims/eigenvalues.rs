@@ -9,8 +9,9 @@ use workloads::rng::Rng;
 use xtask::engine;
 use xtask::plot::duration;
 use xtask::validate::page::error;
-use xtask::validate::{Case, as_read, progress, score};
+use xtask::validate::{Case, progress, score};
 use xtask::wire::answer::Line;
+use xtask::wire::answer::as_read;
 
 use super::super::growth::time;
 use super::Claim;
