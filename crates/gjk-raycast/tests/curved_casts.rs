@@ -108,7 +108,8 @@ fn the_point_of_contact_of_ellipsoids_is_on_both() {
 }
 
 /// A cone that moves by `velocity` towards a cylinder and touches it at `time`: how many support points the search
-/// took, and whether the contact is certain. What is asked once more of an edge that is met within an error is not counted.
+/// took, and whether the contact is certain. What is asked once more of an edge that is met within an error is not
+/// counted.
 fn cylinder_and_cone(turn: [f64; 4], place: [f64; 3], velocity: [f64; 3], time: f64) -> (usize, bool) {
     let cylinder = Cylinder::<DVec3>::new(0.75, 0.5).expect(VALID);
     let cone = Cone::<DVec3>::new(0.75, 0.625).expect(VALID);
@@ -152,8 +153,9 @@ fn an_edge_that_is_hit_beside_the_outline_is_certain() {
     assert!(is_certain);
 }
 
-/// An edge again, where the line is enclosed. Newton's step for one piece was left out where its curvature is singular; the
-/// planes were then laid on the border to the next piece, and half of them only showed that: 40 support points in vain.
+/// An edge again, where the line is enclosed. Newton's step for one piece was left out where its curvature is singular;
+/// the planes were then laid on the border to the next piece, and half of them only showed that: 40 support points in
+/// vain.
 #[test]
 fn an_edge_is_found_by_its_one_curvature() {
     let (iterations, _) = cylinder_and_cone(

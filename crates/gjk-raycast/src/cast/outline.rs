@@ -86,10 +86,6 @@ impl<V: Vector> RayFrame<V> {
         polygon.insert(0, right);
         polygon.insert(1, left);
         while polygon.len < MAX_CORNERS {
-            // No further point surrounds the line there.
-            if polygon.sides().iter().any(|side| side.is_outermost && side.distance <= error + error) {
-                return None;
-            }
             let wide = V::Scalar::from_f64(WIDE);
             let Some(i) = polygon.nearest_of(|side| !side.is_outermost && side.distance < wide) else { break };
             let PolygonSide { distance, outward, .. } = polygon.sides[i];
@@ -97,6 +93,9 @@ impl<V: Vector> RayFrame<V> {
             // NaN is no farther.
             if dot(corner.across, outward) > distance + error {
                 polygon.insert(i + 1, corner);
+            } else if distance <= error + error {
+                // No further point surrounds the line there.
+                return None;
             } else {
                 polygon.sides[i].is_outermost = true;
             }
