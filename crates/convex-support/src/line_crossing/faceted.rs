@@ -1,5 +1,7 @@
 //! Hulls with facets.
 
+use core::array::from_fn;
+
 use num_traits::Float as _;
 
 use super::{CertainCrossing, Crossed, Crossing, NearLine, comfortable, rebased};
@@ -91,32 +93,51 @@ pub(super) struct Clipped<S> {
 /// itself, compares false and changes nothing. Adding zero makes a negative zero positive, so that it does not count as
 /// a negative number.
 #[inline(never)]
-fn clip<S: Scalar>(planes: &[Planes<S>], [x, y, z]: [S; 3], [dx, dy, dz]: [S; 3]) -> Clipped<S> {
-    let (below, width) = (-S::infinity(), S::from_f64(PLANES as f64));
-    let mut here: [S; PLANES] = core::array::from_fn(|l| S::from_f64(l as f64));
-    // The last of the planes by which the line enters, and of those by which the reversed line enters.
-    let (mut entries, mut into) = ([below; 2 * PLANES], [S::ZERO; 2 * PLANES]);
-    for [nx, ny, nz, reach] in planes {
-        let slope: [S; PLANES] = core::array::from_fn(|l| nx[l] * dx + ny[l] * dy + nz[l] * dz + S::ZERO);
-        let crossed: [S; PLANES] =
-            core::array::from_fn(|l| (reach[l] - (nx[l] * x + ny[l] * y + nz[l] * z)) / slope[l]);
-        let enters: [S; 2 * PLANES] = core::array::from_fn(|l| {
-            let (k, is_back) = (l % PLANES, l >= PLANES);
-            if (slope[k] < S::ZERO) != is_back { if is_back { -crossed[k] } else { crossed[k] } } else { below }
-        });
-        for l in 0..2 * PLANES {
-            into[l] = if enters[l] > entries[l] { here[l % PLANES] } else { into[l] };
-            entries[l] = if enters[l] > entries[l] { enters[l] } else { entries[l] };
-        }
-        for here in &mut here {
-            *here += width;
-        }
+fn clip<S: Scalar>(planes: &[Planes<S>], point: [S; 3], direction: [S; 3]) -> Clipped<S> {
+    match side_by_side::<S>() {
+        4 => clip_by::<S, 4>(planes, point, direction),
+        _ => clip_by::<S, 2>(planes, point, direction),
     }
-    let last =
-        |from: usize| (from..from + PLANES).fold(from, |last, l| if entries[l] > entries[last] { l } else { last });
-    let (last, first) = (last(0), last(PLANES));
-    let index = |place: S| place.as_f64() as usize;
-    Clipped { entry: entries[last], exit: -entries[first], into: index(into[last]), out_of: index(into[first]) }
+}
+
+/// How many planes a line is clipped by at a time: as many as a vector register of every target has room for. With
+/// more of them, compilers pack the results of comparisons and unpack them again, and it takes up to twice as long.
+pub(super) const fn side_by_side<S>() -> usize {
+    if size_of::<S>() > 4 { 2 } else { 4 }
+}
+
+#[inline(always)]
+fn clip_by<S: Scalar, const N: usize>(planes: &[Planes<S>], [x, y, z]: [S; 3], [dx, dy, dz]: [S; 3]) -> Clipped<S> {
+    let (below, width) = (-S::infinity(), S::from_f64(N as f64));
+    let larger = |a: S, b: S| if b > a { b } else { a };
+    let mut here: [S; N] = from_fn(|l| S::from_f64(l as f64));
+    // The last of the parameters at which the line enters a half-space, and at which the reversed line does; and the
+    // indices of their planes.
+    let (mut entries, mut into) = ([[below; N]; 2], [[S::ZERO; N]; 2]);
+    for part in 0..planes.len() * (PLANES / N) {
+        let ([nx, ny, nz, reach], at) = (&planes[part / (PLANES / N)], part % (PLANES / N) * N);
+        let slope: [S; N] = from_fn(|l| nx[at + l] * dx + ny[at + l] * dy + nz[at + l] * dz + S::ZERO);
+        let room: [S; N] = from_fn(|l| reach[at + l] - (nx[at + l] * x + ny[at + l] * y + nz[at + l] * z));
+        let crossed: [S; N] = from_fn(|l| room[l] / slope[l]);
+        let enters: [[S; N]; 2] = [
+            from_fn(|l| if slope[l] < S::ZERO { crossed[l] } else { below }),
+            from_fn(|l| if slope[l] < S::ZERO { below } else { -crossed[l] }),
+        ];
+        for way in 0..2 {
+            for l in 0..N {
+                let is_later = enters[way][l] > entries[way][l];
+                into[way][l] = larger(into[way][l], if is_later { here[l] } else { S::ZERO });
+                entries[way][l] = larger(entries[way][l], enters[way][l]);
+            }
+        }
+        here = here.map(|here| here + width);
+    }
+    let last = |way: usize| {
+        let l = (0..N).fold(0, |last, l| if entries[way][l] > entries[way][last] { l } else { last });
+        (entries[way][l], into[way][l].as_f64() as usize)
+    };
+    let ((entry, into), (exit, out_of)) = (last(0), last(1));
+    Clipped { entry, exit: -exit, into, out_of }
 }
 
 /// How far a point is beyond the plane that it is farthest beyond, or negative.

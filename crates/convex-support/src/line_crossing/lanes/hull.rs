@@ -1,7 +1,9 @@
 //! Many lines at one hull with facets.
 
+use core::array::from_fn;
+
 use super::{LINES, Lane, Lines, Told, approach, numbers, set};
-use crate::line_crossing::faceted::Clipped;
+use crate::line_crossing::faceted::{Clipped, side_by_side};
 use crate::numerics::widest::{Loop, widest};
 use crate::shapes::{PLANES, Planes};
 use crate::{Scalar, Vector, compiled_once};
@@ -25,22 +27,26 @@ compiled_once! {
                     (lines.base[line], lines.near_error[line]) = (foot.base, foot.error);
                     set(&mut lines.near, line, foot.source);
                 }
-                let clipped = clip_lines(planes, &lines.near, &lines.direction);
-                // The parameter at which each line is in the hull if it enters it.
-                let mut inner = [[V::Scalar::ZERO; LINES]; 3];
-                for line in 0..LINES {
-                    let near = lines.near::<V>(line, size);
-                    let (told, latest) = match near.cut(planes, clipped.get(line)) {
-                        Some((known, latest)) => (Told::new(known), latest),
-                        None => (Told::NOTHING, V::Scalar::ZERO),
-                    };
-                    lines.tell(line, told);
-                    set(&mut inner, line, near.source + near.direction * latest);
-                }
-                let most = most_beyond_of_all(planes, &inner);
-                for line in 0..LINES {
-                    let is_known = (lines.known[line] < V::Scalar::ZERO) | (most[line] <= -lines.near_error[line]);
-                    lines.known[line] = if is_known { lines.known[line] } else { V::Scalar::ZERO };
+                for at in (0..LINES).step_by(TOGETHER) {
+                    let clipped = clip_lines(planes, together(&lines.near, at), together(&lines.direction, at));
+                    // A point of each line, which is in the hull if the line enters it.
+                    let mut inner = [[V::Scalar::ZERO; TOGETHER]; 3];
+                    for l in 0..TOGETHER {
+                        let near = lines.near::<V>(at + l, size);
+                        let (told, latest) = match near.cut(planes, clipped.get(l)) {
+                            Some((known, latest)) => (Told::new(known), latest),
+                            None => (Told::NOTHING, V::Scalar::ZERO),
+                        };
+                        lines.tell(at + l, told);
+                        let point = near.source + near.direction * latest;
+                        (0..V::DIM).for_each(|i| inner[i][l] = point.get(i));
+                    }
+                    let most = most_beyond_of_all(planes, inner);
+                    for l in 0..TOGETHER {
+                        let line = at + l;
+                        let is_known = (lines.known[line] < V::Scalar::ZERO) | (most[l] <= -lines.near_error[line]);
+                        lines.known[line] = if is_known { lines.known[line] } else { V::Scalar::ZERO };
+                    }
                 }
             }
         }
@@ -49,69 +55,79 @@ compiled_once! {
     }
 }
 
+/// Lines that are clipped together: what is found of them so far stays in registers while the planes go by.
+const TOGETHER: usize = 8;
+
+#[inline(always)]
+fn by_line<S>(number: impl FnMut(usize) -> S) -> [S; TOGETHER] {
+    from_fn(number)
+}
+
+/// Vectors of the lines from `at` on that are clipped together.
+#[inline(always)]
+fn together<S: Scalar>(lanes: &[Lane<S>; 3], at: usize) -> [[S; TOGETHER]; 3] {
+    from_fn(|i| by_line(|l| lanes[i][at + l]))
+}
+
 /// [`Clipped`] for many lines; the exits are negated.
 struct ClippedLines<S> {
-    entries: Lane<S>,
-    exits: Lane<S>,
-    into: Lane<S>,
-    out_of: Lane<S>,
+    entries: [S; TOGETHER],
+    exits: [S; TOGETHER],
+    into: [S; TOGETHER],
+    out_of: [S; TOGETHER],
 }
 
 impl<S: Scalar> ClippedLines<S> {
     #[inline(always)]
-    fn get(&self, line: usize) -> Clipped<S> {
-        let [into, out_of] = [self.into[line], self.out_of[line]].map(|place| place.as_f64() as usize);
-        Clipped { entry: self.entries[line], exit: -self.exits[line], into, out_of }
+    fn get(&self, l: usize) -> Clipped<S> {
+        let [into, out_of] = [self.into[l], self.out_of[l]].map(|place| place.as_f64() as usize);
+        Clipped { entry: self.entries[l], exit: -self.exits[l], into, out_of }
     }
 }
 
-/// `clip` for many lines, each at one plane after the other; for one line, planes are side by side. Among planes that
+/// `clip` for many lines, each by one plane after the other; for one line, planes are side by side. Among planes that
 /// are entered at the same parameter both find the same one: the first of the first row.
 #[inline(always)]
 fn clip_lines<S: Scalar>(
     planes: &[Planes<S>],
-    [x, y, z]: &[Lane<S>; 3],
-    [dx, dy, dz]: &[Lane<S>; 3],
+    [x, y, z]: [[S; TOGETHER]; 3],
+    [dx, dy, dz]: [[S; TOGETHER]; 3],
 ) -> ClippedLines<S> {
-    let (below, width) = (-S::infinity(), S::from_f64(PLANES as f64));
-    let mut found = ClippedLines {
-        entries: [below; LINES],
-        exits: [below; LINES],
-        into: [S::ZERO; LINES],
-        out_of: [S::ZERO; LINES],
-    };
-    for row in 0..PLANES {
+    let (below, rows) = (-S::infinity(), side_by_side::<S>());
+    let width = S::from_f64(rows as f64);
+    let (mut entries, mut exits) = ([below; TOGETHER], [below; TOGETHER]);
+    let (mut into, mut out_of) = ([S::ZERO; TOGETHER], [S::ZERO; TOGETHER]);
+    for row in 0..rows {
         let mut here = S::from_f64(row as f64);
         for [nx, ny, nz, reach] in planes {
-            let [nx, ny, nz, reach] = [nx[row], ny[row], nz[row], reach[row]];
-            for l in 0..LINES {
-                let slope = nx * dx[l] + ny * dy[l] + nz * dz[l] + S::ZERO;
-                let crossed = (reach - (nx * x[l] + ny * y[l] + nz * z[l])) / slope;
-                let entry = if slope < S::ZERO { crossed } else { below };
-                let exit = if slope < S::ZERO { below } else { -crossed };
-                let (enters, leaves) = (entry > found.entries[l], exit > found.exits[l]);
-                found.into[l] = if enters { here } else { found.into[l] };
-                found.entries[l] = if enters { entry } else { found.entries[l] };
-                found.out_of[l] = if leaves { here } else { found.out_of[l] };
-                found.exits[l] = if leaves { exit } else { found.exits[l] };
+            for p in 0..PLANES / rows {
+                let [nx, ny, nz, reach] = [nx, ny, nz, reach].map(|numbers| numbers[row + p * rows]);
+                // Each step makes an array. A loop that changes one is compiled to stores under a mask, which take
+                // three times as long as all the rest.
+                let slope = by_line(|l| nx * dx[l] + ny * dy[l] + nz * dz[l] + S::ZERO);
+                let crossed = by_line(|l| (reach - (nx * x[l] + ny * y[l] + nz * z[l])) / slope[l]);
+                let entry = by_line(|l| if slope[l] < S::ZERO { crossed[l] } else { below });
+                let exit = by_line(|l| if slope[l] < S::ZERO { below } else { -crossed[l] });
+                into = by_line(|l| if entry[l] > entries[l] { here } else { into[l] });
+                entries = by_line(|l| if entry[l] > entries[l] { entry[l] } else { entries[l] });
+                out_of = by_line(|l| if exit[l] > exits[l] { here } else { out_of[l] });
+                exits = by_line(|l| if exit[l] > exits[l] { exit[l] } else { exits[l] });
+                here += width;
             }
-            here += width;
         }
     }
-    found
+    ClippedLines { entries, exits, into, out_of }
 }
 
 /// `most_beyond` for many points, each at one plane after the other.
 #[inline(always)]
-fn most_beyond_of_all<S: Scalar>(planes: &[Planes<S>], [x, y, z]: &[Lane<S>; 3]) -> Lane<S> {
-    let mut most = [-S::infinity(); LINES];
+fn most_beyond_of_all<S: Scalar>(planes: &[Planes<S>], [x, y, z]: [[S; TOGETHER]; 3]) -> [S; TOGETHER] {
+    let mut most = [-S::infinity(); TOGETHER];
     for [nx, ny, nz, reach] in planes {
         for row in 0..PLANES {
             let [nx, ny, nz, reach] = [nx[row], ny[row], nz[row], reach[row]];
-            for l in 0..LINES {
-                let beyond = nx * x[l] + ny * y[l] + nz * z[l] - reach;
-                most[l] = if beyond > most[l] { beyond } else { most[l] };
-            }
+            let beyond = by_line(|l| nx * x[l] + ny * y[l] + nz * z[l] - reach);
+            most = by_line(|l| if beyond[l] > most[l] { beyond[l] } else { most[l] });
         }
     }
     most
