@@ -9,7 +9,7 @@
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 use std::f64::consts::TAU;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{Ball, Capsule, Cuboid, Posed, SupportMap};
@@ -50,11 +50,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The deck, and a mast behind the sensor.
     let deck = Posed::translated(Cuboid::new(DVec3::new(0.9, 0.3, 0.6))?, DVec3::new(0.0, 1.1, 0.0))?;
     let mast = Posed::translated(Capsule::new(0.5, 0.05)?, DVec3::new(-0.6, 1.7, 0.0))?;
-    let begin = Instant::now();
     let mut own = [vec![RayEntry::default(); rays.len()], vec![RayEntry::default(); rays.len()]];
-    ray_entries_into(&deck, &rays, options, &mut own[0])?;
-    ray_entries_into(&mast, &rays, options, &mut own[1])?;
-    let own_time = begin.elapsed();
+    let mut own_time = Duration::ZERO;
+    // The second sweep is timed: in the first one, the memory of the answers is used for the first time.
+    for _ in 0..2 {
+        let begin = Instant::now();
+        ray_entries_into(&deck, &rays, options, &mut own[0])?;
+        ray_entries_into(&mast, &rays, options, &mut own[1])?;
+        own_time = begin.elapsed();
+    }
 
     let scene = Scene::new(yard()?)?;
     let begin = Instant::now();
@@ -78,7 +82,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let yard_time = begin.elapsed();
     println!("{} rays: {of_robot} hit the robot, {of_yard} one of {} bodies", rays.len(), scene.len());
-    let each = |time: std::time::Duration| time.as_nanos() as f64 / rays.len() as f64;
+    let each = |time: Duration| time.as_nanos() as f64 / rays.len() as f64;
     println!("{:.0} ns a ray for the robot, {:.0} ns for the yard", each(own_time), each(yard_time));
     assert!(of_robot * 20 > rings * spokes && of_yard * 3 > rings * spokes, "{of_robot} and {of_yard}");
 
