@@ -275,8 +275,8 @@ pub fn measure(workloads: &[Workload], budget: Duration, mut progress: impl FnMu
 #[inline]
 #[must_use]
 pub fn ray_casters(shape: &Shape, rays: &[w1_ray_cast::Ray]) -> Vec<(Method, Solver)> {
-    // Clipping a ray by the facets is the quicker way for few of them.
-    let faceted = matches!(shape, Shape::Hull { points } if points.len() <= 16);
+    // As docs/choosing-a-method.md advises: clipping a ray by the facets is the quicker way for few of them.
+    let faceted = matches!(shape, Shape::Hull { points } if points.len() <= 64);
     let effort = Effort { faceted, ..Effort::default() };
     #[allow(unused_mut, reason = "without peers there is nothing to add")]
     let mut solvers = vec![
