@@ -176,6 +176,21 @@ fn all_kinds<V: Vector>(seed: u64) {
                         &SweptBox::new(numbers.vector::<V>(size * 0.05).abs(), source, along),
                         share,
                     );
+                    // Of several at once, beside one another and from anywhere.
+                    let several: [_; 4] = core::array::from_fn(|k| {
+                        let (at, by) = if k == 3 { (size, 1.0) } else { (size * 0.01, 0.1) };
+                        let half: V = numbers.vector::<V>(size * 0.05).abs();
+                        SweptBox::new(half, source + numbers.vector(at), along + numbers.vector(by))
+                    });
+                    let all = several[1..].iter().try_fold(several[0], |all, one| all.and(one)).expect("as fast");
+                    found += check(&tree, &boxes, &all, share);
+                    for around in boxes.iter().flatten() {
+                        let least = several
+                            .map(|one| one.bound(around))
+                            .into_iter()
+                            .fold(V::Scalar::infinity(), |a, b| a.min(b));
+                        assert!(all.bound(around) <= least, "{around:?} by {several:?}");
+                    }
                     found += check(&tree, &boxes, &BoxDistance::new(numbers.around(size, size * 0.1)), share);
                 }
                 if round == 0 {

@@ -3,8 +3,8 @@
 //! `cargo run --release -p gjk-raycast --features simd --example lidar` tells what it took; with a file name after `--`
 //! it writes the ranges as a picture, a grey map in PGM.
 //!
-//! Rays that hit the robot itself are sorted out first: all of them against a few shapes that do not change, many
-//! rays at a time. The others are cast into the scene.
+//! All rays are cast at the robot's own shapes, many at a time, to sort out those that hit the robot itself; and into
+//! the scene, where each eight neighbours share a search of the tree.
 
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{Ball, Capsule, Cuboid, Posed, SupportMap};
-use gjk_raycast::{Ray, RayCastOptions, RayEntry, Scene, ray_cast, ray_entries_into};
+use gjk_raycast::{Ray, RayCastOptions, RayEntry, Scene, SceneCast, ray_cast, ray_entries_into};
 
 type Shape = Box<dyn SupportMap<Vector = DVec3> + Sync>;
 
@@ -61,26 +61,32 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 
     let scene = Scene::new(yard()?)?;
-    let begin = Instant::now();
+    let mut of_scene = vec![SceneCast::default(); rays.len()];
+    let mut yard_time = Duration::ZERO;
+    for _ in 0..2 {
+        let begin = Instant::now();
+        scene.all().ray_casts_into(&rays, options, &mut of_scene)?;
+        yard_time = begin.elapsed();
+    }
+
     let mut ranges = Vec::with_capacity(rays.len());
     let (mut of_robot, mut of_yard) = (0, 0);
     for (k, &ray) in rays.iter().enumerate() {
         let on_robot = own[0][k].lambda.min(own[1][k].lambda);
-        let cast = scene.all().ray_cast(ray, options.with_max_lambda(on_robot.min(120.0)))?;
-        of_robot += u32::from(on_robot < f64::INFINITY);
-        of_yard += u32::from(cast.first.is_some());
-        ranges
-            .push(cast.first.map_or(if on_robot < f64::INFINITY { 0.0 } else { f64::INFINITY }, |hit| hit.hit.lambda));
-        // Now and then each of the robot's shapes is asked alone.
+        let in_yard = of_scene[k].first.map_or(f64::INFINITY, |first| first.hit.lambda);
+        of_robot += u32::from(on_robot <= in_yard && on_robot < f64::INFINITY);
+        of_yard += u32::from(in_yard < on_robot);
+        ranges.push(if in_yard < on_robot || on_robot == f64::INFINITY { in_yard } else { 0.0 });
+        // Now and then each of the robot's shapes is asked alone, and so is the yard.
         if k % 997 == 0 {
             for (shape, entry) in
                 [&deck as &dyn SupportMap<Vector = DVec3>, &mast].into_iter().zip([own[0][k], own[1][k]])
             {
                 assert_eq!(entry, RayEntry::from(ray_cast(shape, ray, options)?), "to the last bit");
             }
+            assert_eq!(of_scene[k].first, scene.ray_cast(ray, options)?.first, "to the last bit");
         }
     }
-    let yard_time = begin.elapsed();
     println!("{} rays: {of_robot} hit the robot, {of_yard} one of {} bodies", rays.len(), scene.len());
     let each = |time: Duration| time.as_nanos() as f64 / rays.len() as f64;
     println!("{:.0} ns a ray for the robot, {:.0} ns for the yard", each(own_time), each(yard_time));

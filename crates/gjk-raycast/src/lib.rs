@@ -49,7 +49,7 @@
 //!
 //! About many shapes:
 //! - *Which is hit first, which is nearest, which are within a distance, which pairs are near each other, and in which
-//!   points do they touch?* [`Scene`].
+//!   points do they touch?* [`Scene`]; for many rays at once [`Among::ray_casts_into`].
 //! - *How far apart is each of many pairs?* [`map_distances_into`] writes one number of each answer into a slice.
 //!
 //! About an answer:

@@ -58,8 +58,8 @@ fn rounding<S: Scalar>() -> S {
 pub struct SweptBox<V: Vector> {
     /// The numbers that the smallest and the largest coordinate of a box are compared with: s + h and s − h.
     from: [V; 2],
-    /// The reciprocal 1/d, in the unit of d.
-    inverse: V,
+    /// The reciprocal 1/d, in the unit of d: for the beginning of a box, and for its end.
+    inverse: [V; 2],
     /// A power of two about as large as the largest coordinate of d.
     unit: V::Scalar,
 }
@@ -70,7 +70,36 @@ impl<V: Vector> SweptBox<V> {
     pub fn new(half_extents: V, source: V, direction: V) -> Self {
         let unit = power_of_two_below(direction.abs().max_element());
         let inverse = V::from_fn(|i| V::Scalar::ONE / (direction.get(i) / unit));
-        Self { from: [source + half_extents, source - half_extents], inverse, unit }
+        Self { from: [source + half_extents, source - half_extents], inverse: [inverse; 2], unit }
+    }
+
+    /// A bound for this moving box and another one, at most that of either. `None` if one moves more than 2¹⁶ times as
+    /// fast as the other.
+    ///
+    /// Along each coordinate, a box begins as for the one that is there first and is fastest, and ends as for the last
+    /// and slowest. If they move in opposite directions, a box has begun and never ends. The smallest normal number is
+    /// room for products that are smaller, whose rounding depends on the unit.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Option<Self> {
+        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+        let (per_unit, most) = (self.unit / other.unit, V::Scalar::from_f64(f64::from(1 << 16)));
+        if !(per_unit <= most && per_unit * most >= V::Scalar::ONE) {
+            return None;
+        }
+        let of = |i: usize| {
+            let least = V::Scalar::min_positive_value();
+            let first = self.from[0].get(i).max(other.from[0].get(i)) + least;
+            let last = self.from[1].get(i).min(other.from[1].get(i)) - least;
+            let [a, b] = [self.inverse.map(|v| v.get(i)), other.inverse.map(|v| v.get(i) * per_unit)];
+            if a[0].is_sign_negative() != b[0].is_sign_negative() {
+                return [first, -V::Scalar::max_value(), zero, infinity];
+            }
+            let begin = if a[0].abs() < b[0].abs() { a[0] } else { b[0] };
+            let end = if a[1].abs() > b[1].abs() { a[1] } else { b[1] };
+            [first, last, begin, end]
+        };
+        let part = |k: usize| V::from_fn(|i| of(i)[k]);
+        Some(Self { from: [part(0), part(1)], inverse: [part(2), part(3)], unit: self.unit })
     }
 }
 
@@ -83,10 +112,11 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
         let (after, before) = (around.min - self.from[0], around.max - self.from[1]);
         let (mut entry, mut exit) = (zero, V::Scalar::infinity());
         for i in 0..V::DIM {
-            let inverse = self.inverse.get(i);
-            let sides = (after.get(i) * inverse, before.get(i) * inverse);
+            let [begin, end] = self.inverse.map(|inverse| inverse.get(i));
+            let (near, far) = (after.get(i), before.get(i));
+            let (near, far) = if begin.is_sign_negative() { (far, near) } else { (near, far) };
             // If d is zero, the quotient is ±∞ by the side of the plane, and NaN on it, which then changes nothing.
-            let (begins, ends) = if inverse.is_sign_negative() { (sides.1, sides.0) } else { sides };
+            let (begins, ends) = (near * begin, far * end);
             entry = if begins > entry { begins } else { entry };
             exit = if ends < exit { ends } else { exit };
         }
@@ -110,11 +140,11 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
         };
         let largest = f64::from(f32::MAX);
         for i in 0..V::DIM {
-            let inverse = self.inverse.get(i).as_f64();
+            let [begin, end] = self.inverse.map(|inverse| inverse.get(i).as_f64());
             // Along a plane a box that has begun never ends, and one that has not begins at the largest number.
-            let (begin, end) = (inverse.clamp(-largest, largest), inverse * (1.0 + 2.0 * CoarseUnit::ROUNDING));
-            coarse.inverse[i] = [begin, end].map(|inverse| Vec4::splat(inverse as f32));
-            let first = usize::from(inverse.is_sign_negative());
+            let inverse = [begin.clamp(-largest, largest), end * (1.0 + 2.0 * CoarseUnit::ROUNDING)];
+            coarse.inverse[i] = inverse.map(|inverse| Vec4::splat(inverse as f32));
+            let first = usize::from(begin.is_sign_negative());
             let from = [frame.up(i, self.from[0].get(i)), frame.down(i, self.from[1].get(i))];
             coarse.from[i] = [from[first], from[1 - first]].map(Vec4::splat);
             coarse.first[i] = first;

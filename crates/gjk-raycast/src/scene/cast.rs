@@ -11,7 +11,7 @@ use super::bounds::MovingBalls;
 use super::result::{
     BodyHit, SceneAnyHit, SceneCast, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, reuse,
 };
-use super::{Among, Body};
+use super::{Among, Body, Work};
 use crate::motion::{check, checked};
 use crate::{
     Cast, ChainMotion, Impact, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastError, RayCastOptions, RayHit,
@@ -30,6 +30,43 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<SceneRayCast<S::Vector>, RayCastError> {
         ray.check(&options)?;
         self.first(&swept_point(ray), options.max_lambda, |body| body.ray_cast(ray, options), |hit| hit.lambda)
+    }
+
+    /// [`ray_cast`](Self::ray_cast) for each of many rays, written into a slice. Nothing is allocated.
+    ///
+    /// Each eight rays in a row share a search of the tree, which takes less time if they are near one another, such as
+    /// those of a lidar or a picture. Each answer is that of the ray alone, but for the [`Work`]: the nodes are those of
+    /// the shared search.
+    ///
+    /// ```
+    /// use convex_support::{Ball, Posed, glam::DVec2};
+    /// use gjk_raycast::{Ray, RayCastOptions, Scene, SceneCast};
+    ///
+    /// let ball_at = |x, y| Posed::translated(Ball::new(0.5)?, DVec2::new(x, y));
+    /// let scene = Scene::new([ball_at(3.0, 0.0)?, ball_at(0.0, 5.0)?])?;
+    /// let rays = [DVec2::X, DVec2::Y, DVec2::NEG_X].map(|direction| Ray { source: DVec2::ZERO, direction });
+    /// let mut casts = [SceneCast::default(); 3];
+    /// scene.all().ray_casts_into(&rays, RayCastOptions::new(), &mut casts)?;
+    /// let first = casts.map(|cast| cast.first.map(|first| (first.body, first.hit.lambda)));
+    /// assert_eq!(first, [Some((0, 2.5)), Some((1, 4.5)), None]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`RayCastError`] of the first ray that has one. Then no answer is written.
+    ///
+    /// # Panics
+    /// If the number of answers is not the number of rays.
+    pub fn ray_casts_into(
+        &self,
+        rays: &[Ray<S::Vector>],
+        options: RayCastOptions<S::Vector>,
+        casts: &mut [SceneRayCast<S::Vector>],
+    ) -> Result<(), RayCastError> {
+        assert_eq!(rays.len(), casts.len(), "there must be as many answers as rays");
+        rays.iter().try_for_each(|ray| ray.check(&options))?;
+        let mut bundles = rays.chunks(BUNDLE).zip(casts.chunks_mut(BUNDLE));
+        bundles.try_for_each(|(rays, casts)| self.bundle(rays, options, casts))
     }
 
     /// Finds all bodies that the ray hits. Writes them into `hits`, which is emptied first, in the order of λ and then
@@ -240,10 +277,6 @@ impl<S: SupportMap> Among<'_, S> {
 
     /// The first hit of all bodies that `bound` does not leave out; `ask` makes the single cast, and `value` is the λ
     /// or the time of a hit.
-    ///
-    /// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, which is impossible if
-    /// the hit's bracket is closed. Keys, and all values kept here, are minima over bodies, without those that their
-    /// boxes left out. So neither the order of the bodies matters, nor which others were tested.
     fn first<H: Copy, B: Bound<S::Vector>>(
         &self,
         bound: &B,
@@ -251,29 +284,103 @@ impl<S: SupportMap> Among<'_, S> {
         ask: impl Fn(&Body<S>) -> Result<Cast<H, S::Vector>, RayCastError>,
         value: impl Fn(&H) -> ScalarOf<S>,
     ) -> Result<SceneCast<H, ScalarOf<S>>, RayCastError> {
-        // The least key, with the hit; and the earliest possible hit of an undecided body, with its index.
-        let (mut first, mut open) = (None::<(_, BodyHit<H, ScalarOf<S>>)>, None);
-        let mut lower = ScalarOf::<S>::infinity();
+        let mut found = First::default();
         let work = self.in_order(bound, end, |index, from, body| {
-            let cast = ask(body)?;
-            let start = (Float::max(cast.lower, from), index);
-            if !cast.outcome.is_miss() {
-                lower = Float::min(lower, start.0);
+            found.add(index, from, &ask(body)?, &value);
+            Ok(ControlFlow::Continue(found.limit(end)))
+        })?;
+        Ok(found.answer(work))
+    }
+
+    /// [`ray_casts_into`](Self::ray_casts_into) for rays that share one search.
+    fn bundle(
+        &self,
+        rays: &[Ray<S::Vector>],
+        options: RayCastOptions<S::Vector>,
+        casts: &mut [SceneRayCast<S::Vector>],
+    ) -> Result<(), RayCastError> {
+        let end = options.max_lambda;
+        let swept: [_; BUNDLE] = core::array::from_fn(|k| swept_point(rays[k.min(rays.len() - 1)]));
+        let Some(around) = swept[1..].iter().try_fold(swept[0], |all, one| all.and(one)) else {
+            for (&ray, cast) in rays.iter().zip(casts) {
+                *cast = self.ray_cast(ray, options)?;
             }
-            if cast.outcome.is_undecided() && open.is_none_or(|open| start < open) {
-                open = Some(start);
-            }
-            if let Some(hit) = BodyHit::of(index, &cast) {
-                let key = (Float::max(value(&hit.hit), from), index);
-                if first.is_none_or(|(least, _)| key < least) {
-                    first = Some((key, hit));
+            return Ok(());
+        };
+        let (mut found, mut tested) = ([First::default(); BUNDLE], [0; BUNDLE]);
+        let mut limits = [(end, usize::MAX); BUNDLE];
+        let work = self.in_order(&around, end, |index, _, body| {
+            let around = self.scene.tree.get(index);
+            for (k, &ray) in rays.iter().enumerate() {
+                let from = around.map_or(Scalar::ZERO, |around| swept[k].bound(&around));
+                let limit = limits[k];
+                if from < ScalarOf::<S>::infinity() && (from < limit.0 || from == limit.0 && index < limit.1) {
+                    found[k].add(index, from, &body.ray_cast(ray, options)?, |hit| hit.lambda);
+                    (limits[k], tested[k]) = (found[k].limit(end), tested[k] + 1);
                 }
             }
-            Ok(ControlFlow::Continue(first.map_or((end, usize::MAX), |(key, _)| key)))
+            let last = limits[..rays.len()].iter().fold(limits[0].0, |last, limit| Float::max(last, limit.0));
+            Ok(ControlFlow::Continue((last, usize::MAX)))
         })?;
-        let undecided = open.filter(|&open| first.is_none_or(|(key, _)| open < key)).map(|(_, body)| body);
-        let lower = if work.cancelled { Scalar::ZERO } else { lower };
-        Ok(SceneCast { first: first.map(|(_, hit)| hit), lower, undecided, work })
+        for (k, cast) in casts.iter_mut().enumerate() {
+            let mut work = Work { tested: tested[k], ..work };
+            self.finish(&mut work);
+            *cast = found[k].answer(work);
+        }
+        Ok(())
+    }
+}
+
+/// How many rays share one search.
+const BUNDLE: usize = 8;
+
+/// The first hit of those that were found so far.
+///
+/// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, which is impossible if
+/// the hit's bracket is closed. Keys, and all values kept here, are minima over bodies, without those that their boxes
+/// left out. So neither the order of the bodies matters, nor which others were tested.
+#[derive(Clone, Copy)]
+struct First<H, S: Scalar> {
+    /// The least key, with the hit.
+    first: Option<((S, usize), BodyHit<H, S>)>,
+    /// The earliest possible hit of an undecided body, with its index.
+    open: Option<(S, usize)>,
+    lower: S,
+}
+
+impl<H, S: Scalar> Default for First<H, S> {
+    fn default() -> Self {
+        Self { first: None, open: None, lower: S::infinity() }
+    }
+}
+
+impl<H: Copy, S: Scalar> First<H, S> {
+    fn add<V: Vector<Scalar = S>>(&mut self, index: usize, from: S, cast: &Cast<H, V>, value: impl Fn(&H) -> S) {
+        let start = (Float::max(cast.lower, from), index);
+        if !cast.outcome.is_miss() {
+            self.lower = Float::min(self.lower, start.0);
+        }
+        if cast.outcome.is_undecided() && self.open.is_none_or(|open| start < open) {
+            self.open = Some(start);
+        }
+        if let Some(hit) = BodyHit::of(index, cast) {
+            let key = (Float::max(value(&hit.hit), from), index);
+            if self.first.is_none_or(|(least, _)| key < least) {
+                self.first = Some((key, hit));
+            }
+        }
+    }
+
+    /// The key from which on no body counts.
+    fn limit(&self, end: S) -> (S, usize) {
+        self.first.map_or((end, usize::MAX), |(key, _)| key)
+    }
+
+    fn answer(&self, work: Work) -> SceneCast<H, S> {
+        let before_first = |&open: &(S, usize)| self.first.is_none_or(|(key, _)| open < key);
+        let undecided = self.open.filter(before_first).map(|(_, body)| body);
+        let lower = if work.cancelled { S::ZERO } else { self.lower };
+        SceneCast { first: self.first.map(|(_, hit)| hit), lower, undecided, work }
     }
 }
 

@@ -41,6 +41,13 @@ pub struct SceneCast<H, S: Scalar> {
     pub work: Work,
 }
 
+impl<H, S: Scalar> Default for SceneCast<H, S> {
+    /// That of an empty scene: all is missed.
+    fn default() -> Self {
+        Self { first: None, lower: S::infinity(), undecided: None, work: Work::default() }
+    }
+}
+
 impl<H, S: Scalar> SceneCast<H, S> {
     /// Whether the outcome is certain. A hit is certain if its upper bound is finite and no body before it is
     /// undecided, a miss if no body is.

@@ -3,7 +3,7 @@
 use convex_support::{AngularVelocity as _, Rotation as _, Scalar, bounding_box};
 use gjk_raycast::{
     BodyHit, CastMethod, DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Outcome, Ray, RayCastOptions,
-    RigidMotion, SignedDistanceOptions, StartInContact, Status, SubAlgorithm,
+    RigidMotion, SceneRayCast, SignedDistanceOptions, StartInContact, Status, SubAlgorithm,
 };
 use num_traits::Float;
 
@@ -48,6 +48,7 @@ pub(crate) fn ask<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut
         linear_cast(world, numbers, count);
         distances(world, numbers, count);
     }
+    many_rays(world, numbers);
     motion_cast(world, numbers, count);
     pairs(world, numbers, count);
     contacts(world, numbers, count);
@@ -124,6 +125,43 @@ fn ray<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
     }
     assert!(any.hit || any.undecided == all.undecided, "who is undecided");
     count.questions += 3;
+}
+
+/// Rays that share searches are answered as each alone: near one another, every way from one source, from anywhere.
+fn many_rays<V: Space>(world: &World<V>, numbers: &mut Numbers) {
+    let (size, source) = scale(world, numbers);
+    let middle: V = scale(world, numbers).1 - source;
+    let kind = numbers.below(3);
+    let mut rays: Vec<_> = (0..19)
+        .map(|_| match kind {
+            0 => Ray { source, direction: middle + numbers.vector(0.05 * middle.norm().as_f64()) },
+            1 => Ray { source, direction: numbers.vector(size) },
+            _ => {
+                let size = [1e-9, 1.0][numbers.below(2)];
+                Ray { source: scale(world, numbers).1, direction: numbers.vector(size) }
+            }
+        })
+        .collect();
+    // Along axes, forwards and back, and much longer than the others.
+    for (k, ray) in rays.iter_mut().enumerate().filter(|(k, ray)| k % 5 == 4 || ray.direction == V::ZERO) {
+        let along = if k % 2 == 0 { 1.0 } else { -1.0 };
+        ray.direction = V::axis(k % V::DIM) * V::Scalar::from_f64([along, along * 1e12][k / 10]);
+    }
+    let mut options = RayCastOptions::default();
+    match numbers.below(4) {
+        0 => options.max_lambda = V::Scalar::from_f64(0.9),
+        1 => options.max_iterations = 1 + numbers.below(6),
+        2 => options.tolerance = V::Scalar::from_f64(0.1),
+        _ => {}
+    }
+    let all = world.scene.all();
+    let alone: Vec<_> = rays.iter().map(|&ray| all.ray_cast(ray, options).expect("a good ray")).collect();
+    let mut together: Vec<_> = rays.iter().map(|_| alone[0]).collect();
+    all.ray_casts_into(&rays, options, &mut together).expect("good rays");
+    for ((ray, alone), together) in rays.iter().zip(&alone).zip(&together) {
+        let answer = |cast: &SceneRayCast<V>| (cast.first, cast.lower, cast.undecided);
+        assert_eq!(answer(together), answer(alone), "kind {}, {kind}, {ray:?}, {options:?}", world.kind);
+    }
 }
 
 fn linear_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
