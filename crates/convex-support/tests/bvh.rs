@@ -160,7 +160,7 @@ fn pairs<V: Vector>(tree: &Bvh<V>, boxes: &[Option<Aabb<V>>], distance: V::Scala
 
 fn all_kinds<V: Vector>(seed: u64) {
     let mut numbers = Numbers(seed);
-    let (mut found, mut near) = (0, 0);
+    let (mut found, mut near, mut bundles) = (0, 0, 0);
     for kind in 0..KINDS {
         for count in [0, 1, 2, 4, 5, 17, 150] {
             let mut boxes: Vec<Option<Aabb<V>>> = scene(&mut numbers, kind, count).into_iter().map(Some).collect();
@@ -182,14 +182,19 @@ fn all_kinds<V: Vector>(seed: u64) {
                         let half: V = numbers.vector::<V>(size * 0.05).abs();
                         SweptBox::new(half, source + numbers.vector(at), along + numbers.vector(by))
                     });
-                    let all = several[1..].iter().try_fold(several[0], |all, one| all.and(one)).expect("as fast");
+                    let (mut all, mut of) = (several[0], vec![several[0]]);
+                    for one in &several[1..] {
+                        if let Some(both) = all.and(one) {
+                            all = both;
+                            of.push(*one);
+                        }
+                    }
+                    bundles += usize::from(of.len() > 1);
                     found += check(&tree, &boxes, &all, share);
-                    for around in boxes.iter().flatten() {
-                        let least = several
-                            .map(|one| one.bound(around))
-                            .into_iter()
-                            .fold(V::Scalar::infinity(), |a, b| a.min(b));
-                        assert!(all.bound(around) <= least, "{around:?} by {several:?}");
+                    for (around, one) in
+                        boxes.iter().flatten().flat_map(|around| of.iter().map(move |one| (around, one)))
+                    {
+                        assert!(all.bound(around) <= one.bound(around), "{around:?} by {one:?} of {of:?}");
                     }
                     found += check(&tree, &boxes, &BoxDistance::new(numbers.around(size, size * 0.1)), share);
                 }
@@ -231,6 +236,7 @@ fn all_kinds<V: Vector>(seed: u64) {
             }
         }
     }
+    assert!(bundles > 500, "{bundles} bundles are no fair sample");
     assert!(found > 5000 && near > 1000, "{found} found, {near} pairs are no fair sample");
 }
 

@@ -73,17 +73,18 @@ impl<V: Vector> SweptBox<V> {
         Self { from: [source + half_extents, source - half_extents], inverse: [inverse; 2], unit }
     }
 
-    /// A bound for this moving box and another one, at most that of either. `None` if one moves more than 2¹⁶ times as
-    /// fast as the other.
+    /// A bound for this moving box and another one, at most that of either. `None` if they move in opposite directions
+    /// along a coordinate, or if one moves more than 2¹⁶ times as fast as the other.
     ///
     /// Along each coordinate, a box begins as for the one that is there first and is fastest, and ends as for the last
-    /// and slowest. If they move in opposite directions, a box has begun and never ends. The smallest normal number is
-    /// room for products that are smaller, whose rounding depends on the unit.
+    /// and slowest. The smallest normal number is room for products that are smaller, whose rounding depends on the
+    /// unit.
     #[must_use]
     pub fn and(&self, other: &Self) -> Option<Self> {
-        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         let (per_unit, most) = (self.unit / other.unit, V::Scalar::from_f64(f64::from(1 << 16)));
-        if !(per_unit <= most && per_unit * most >= V::Scalar::ONE) {
+        let is_back = |v: &Self, i: usize| v.inverse[0].get(i).is_sign_negative();
+        let is_as_fast = per_unit <= most && per_unit * most >= V::Scalar::ONE;
+        if !is_as_fast || (0..V::DIM).any(|i| is_back(self, i) != is_back(other, i)) {
             return None;
         }
         let of = |i: usize| {
@@ -91,9 +92,6 @@ impl<V: Vector> SweptBox<V> {
             let first = self.from[0].get(i).max(other.from[0].get(i)) + least;
             let last = self.from[1].get(i).min(other.from[1].get(i)) - least;
             let [a, b] = [self.inverse.map(|v| v.get(i)), other.inverse.map(|v| v.get(i) * per_unit)];
-            if a[0].is_sign_negative() != b[0].is_sign_negative() {
-                return [first, -V::Scalar::max_value(), zero, infinity];
-            }
             let begin = if a[0].abs() < b[0].abs() { a[0] } else { b[0] };
             let end = if a[1].abs() > b[1].abs() { a[1] } else { b[1] };
             [first, last, begin, end]

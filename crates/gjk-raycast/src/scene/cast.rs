@@ -34,9 +34,9 @@ impl<S: SupportMap> Among<'_, S> {
 
     /// [`ray_cast`](Self::ray_cast) for each of many rays, written into a slice. Nothing is allocated.
     ///
-    /// Each eight rays in a row share a search of the tree, which takes less time if they are near one another, such as
-    /// those of a lidar or a picture. Each answer is that of the ray alone, but for the [`Work`]: the nodes are those of
-    /// the shared search.
+    /// Each eight rays in a row share a search of the tree if they are near one another, such as those of a lidar or a
+    /// picture: they take about half of the time. Each answer is that of the ray alone, but for the [`Work`]: the nodes
+    /// are those of the shared search.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -65,8 +65,14 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<(), RayCastError> {
         assert_eq!(rays.len(), casts.len(), "there must be as many answers as rays");
         rays.iter().try_for_each(|ray| ray.check(&options))?;
-        let mut bundles = rays.chunks(BUNDLE).zip(casts.chunks_mut(BUNDLE));
-        bundles.try_for_each(|(rays, casts)| self.bundle(rays, options, casts))
+        for (rays, casts) in rays.chunks(BUNDLE).zip(casts.chunks_mut(BUNDLE)) {
+            if self.bundle(rays, options, casts)?.is_none() {
+                for (&ray, cast) in rays.iter().zip(casts) {
+                    *cast = self.ray_cast(ray, options)?;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Finds all bodies that the ray hits. Writes them into `hits`, which is emptied first, in the order of λ and then
@@ -292,25 +298,25 @@ impl<S: SupportMap> Among<'_, S> {
         Ok(found.answer(work))
     }
 
-    /// [`ray_casts_into`](Self::ray_casts_into) for rays that share one search.
+    /// The first hit of each of a few rays by one search; `None` if they are too far from one another for that to be
+    /// quicker.
     fn bundle(
         &self,
         rays: &[Ray<S::Vector>],
         options: RayCastOptions<S::Vector>,
         casts: &mut [SceneRayCast<S::Vector>],
-    ) -> Result<(), RayCastError> {
+    ) -> Result<Option<()>, RayCastError> {
         let end = options.max_lambda;
         let swept: [_; BUNDLE] = core::array::from_fn(|k| swept_point(rays[k.min(rays.len() - 1)]));
-        let Some(around) = swept[1..].iter().try_fold(swept[0], |all, one| all.and(one)) else {
-            for (&ray, cast) in rays.iter().zip(casts) {
-                *cast = self.ray_cast(ray, options)?;
-            }
-            return Ok(());
-        };
+        let Some(around) = swept[1..].iter().try_fold(swept[0], |all, one| all.and(one)) else { return Ok(None) };
         let (mut found, mut tested) = ([First::default(); BUNDLE], [0; BUNDLE]);
-        let mut limits = [(end, usize::MAX); BUNDLE];
+        let (mut limits, mut visited) = ([(end, usize::MAX); BUNDLE], 0);
         let work = self.in_order(&around, end, |index, _, body| {
             let around = self.scene.tree.get(index);
+            visited += usize::from(around.is_some());
+            if visited > MOST_VISITED {
+                return Ok(ControlFlow::Break(()));
+            }
             for (k, &ray) in rays.iter().enumerate() {
                 let from = around.map_or(Scalar::ZERO, |around| swept[k].bound(&around));
                 let limit = limits[k];
@@ -322,17 +328,23 @@ impl<S: SupportMap> Among<'_, S> {
             let last = limits[..rays.len()].iter().fold(limits[0].0, |last, limit| Float::max(last, limit.0));
             Ok(ControlFlow::Continue((last, usize::MAX)))
         })?;
+        if visited > MOST_VISITED {
+            return Ok(None);
+        }
         for (k, cast) in casts.iter_mut().enumerate() {
             let mut work = Work { tested: tested[k], ..work };
             self.finish(&mut work);
             *cast = found[k].answer(work);
         }
-        Ok(())
+        Ok(Some(()))
     }
 }
 
 /// How many rays share one search.
 const BUNDLE: usize = 8;
+
+/// If a bundle meets the boxes of more bodies, its rays are cast one by one.
+const MOST_VISITED: usize = 64;
 
 /// The first hit of those that were found so far.
 ///
