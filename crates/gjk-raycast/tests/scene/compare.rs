@@ -134,7 +134,7 @@ fn many_rays<V: Space>(world: &World<V>, numbers: &mut Numbers) {
     let kind = numbers.below(3);
     let mut rays: Vec<_> = (0..19)
         .map(|_| match kind {
-            0 => Ray { source, direction: middle + numbers.vector(0.05 * middle.norm().as_f64()) },
+            0 => Ray { source, direction: middle + numbers.vector(0.01 * middle.norm().as_f64()) },
             1 => Ray { source, direction: numbers.vector(size) },
             _ => {
                 let size = [1e-9, 1.0][numbers.below(2)];
