@@ -196,7 +196,7 @@ cube = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
 row("edyn-155", "xissburg/edyn#155", "A ray through the middle of a cube, parallel to four of its faces", "no hit",
     {"query": "ray_cast", "target": points(cube), "source": [2, 0, 0], "direction": [-4, 0, 0]}, {"hit": True, "lambda": 0.25},
     "the face is a plane", allow=1e-12)
-row("godot-jolt-652", "godot-jolt/godot-jolt#652", "A ray that starts inside a solid", "a normal; by convention, and no error",
+row("godot-jolt-652", "godot-jolt/godot-jolt#652", "A ray that starts inside a solid", "a normal, where Godot Physics has none; a convention",
     {"query": "ray_cast", "target": cylinder(2, 1), "source": [0.05, 0.02, -0.03], "direction": [0, 1, 0]}, {"hit": True, "lambda": 0.0, "normal": None},
     "the source is inside, so that there is no normal", pose="after the report")
 
@@ -229,7 +229,7 @@ place = lambda t: turned(inverse(q), [mpf(a) + mpf(v) * t - c for a, v, c in zip
 gap = lambda t: to_box(place(t), slab) - mpf(0.45)
 near = min((gap(mpf(k) / 1000), k) for k in range(1001))
 expect = {"hit": True, "time": float(first(gap, 0, mpf(near[1]) / 1000))} if near[0] < 0 and gap(0) > 0 else ({"hit": True, "time": 0.0} if gap(0) <= 0 else {"hit": False})
-row("bullet-596", "bulletphysics/bullet3#596", "A ball and a turned slab of 100 m", "a hit 10.8 m away, depending on what was asked before",
+row("bullet-596", "bulletphysics/bullet3#596", "A ball and a turned slab of 100 m", "a point of contact 10.8 m away, but not if the pose is asked alone",
     {"query": "linear_cast", "a": posed(ball(0.45), start), "b": posed(box(*slab), [0, 0, 120], q), "velocity_a": velocity, "max_time": 1},
     expect, "distance of a point from a box", allow=1e-9)
 row("box3d-32", "erincatto/box3d#32", "A box a tenth of a millimetre above another moves away", "a hit at 0 whatever the direction, as for any start within the target distance",
