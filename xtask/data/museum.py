@@ -166,7 +166,7 @@ def to_box(p, h):
 
 # Rays.
 row("bullet-1947", "bulletphysics/bullet3#1947", "Nearly perpendicular rays at a wall a kilometre wide",
-    "z from 49.6 to 50 across the wall, whose front is at 50",
+    "points of contact from z = 49.6 to 50, where the front is at z = 50",
     {"query": "ray_cast", "target": posed(box(500, 100, 0.5), [0, 0, 49.5]), "source": [300, 1, 150], "direction": [0, -0.01, -1]},
     {"hit": True, "lambda": 100.0}, "the front is a plane", pose="after the report", allow=1e-9)
 # PhysX's cones point along x.
@@ -196,9 +196,9 @@ cube = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
 row("edyn-155", "xissburg/edyn#155", "A ray through the middle of a cube, parallel to four of its faces", "no hit",
     {"query": "ray_cast", "target": points(cube), "source": [2, 0, 0], "direction": [-4, 0, 0]}, {"hit": True, "lambda": 0.25},
     "the face is a plane", allow=1e-12)
-row("godot-jolt-652", "godot-jolt/godot-jolt#652", "A ray that starts inside a solid", "the normal of some surface; a convention, not an error of geometry",
+row("godot-jolt-652", "godot-jolt/godot-jolt#652", "A ray that starts inside a solid", "a normal, where Godot Physics has none; a convention",
     {"query": "ray_cast", "target": cylinder(2, 1), "source": [0.05, 0.02, -0.03], "direction": [0, 1, 0]}, {"hit": True, "lambda": 0.0, "normal": None},
-    "the source is inside: the hit is at 0 and has no normal", pose="after the report")
+    "the source is inside, so that there is no normal", pose="after the report")
 
 # Linear casts.
 for size in (5, 50, 500):
@@ -216,10 +216,10 @@ row("rapier-js-258", "dimforge/rapier.js#258", "A ball crosses a bar a unit thic
     {"hit": True, "time": float(over)}, "distance of a point from a box", pose="after the report", allow=1e-12)
 bar2 = [exact([335, 0.5]), exact([408, 286.5])]
 over = first(lambda t: to_box([894 - 509 * t - bar2[1][0], 328 - 111 * t - bar2[1][1]], bar2[0]) - 1, 0, mpf("0.5"))
-row("rapier-js-258-second", "dimforge/rapier.js#258", "The same with another bar", "the ray hits, the shape cast misses",
+row("rapier-js-258-second", "dimforge/rapier.js#258", "A ball crosses another bar a unit thick within one step, in the plane", "the ray hits, the shape cast misses",
     {"query": "linear_cast", "a": posed(ball(1), [894, 328]), "b": posed(box(335, 0.5), [408, 286.5]), "velocity_a": [-509, -111], "max_time": 1},
     {"hit": True, "time": float(over)}, "distance of a point from a box", pose="after the report", allow=1e-12)
-row("physx-610", "NVIDIAGameWorks/PhysX#610", "A cube falls on a cube, from y = 15 to 10", "2.9975",
+row("physx-610", "NVIDIAGameWorks/PhysX#610", "A cube falls on a cube, from y = 15 to 10", "a hit at 2.9975",
     {"query": "linear_cast", "a": posed(box(1, 1, 1), [0, 15, 0]), "b": posed(box(1, 1, 1), [0, 10, 0]), "velocity_a": [0, -1, 0]},
     {"hit": True, "time": 3.0}, "faces are parallel", allow=1e-12)
 slab, start, end = [19.92, 0.92, 49.92], [-27.449842, -2.994380, 109.886520], [-27.529308, -3.604819, 109.553276]
@@ -229,13 +229,13 @@ place = lambda t: turned(inverse(q), [mpf(a) + mpf(v) * t - c for a, v, c in zip
 gap = lambda t: to_box(place(t), slab) - mpf(0.45)
 near = min((gap(mpf(k) / 1000), k) for k in range(1001))
 expect = {"hit": True, "time": float(first(gap, 0, mpf(near[1]) / 1000))} if near[0] < 0 and gap(0) > 0 else ({"hit": True, "time": 0.0} if gap(0) <= 0 else {"hit": False})
-row("bullet-596", "bulletphysics/bullet3#596", "A ball and a turned slab of 100 m", "a hit 10.8 m away, depending on what was asked before",
+row("bullet-596", "bulletphysics/bullet3#596", "A ball and a turned slab of 100 m", "a point of contact 10.8 m away, but not if the pose is asked alone",
     {"query": "linear_cast", "a": posed(ball(0.45), start), "b": posed(box(*slab), [0, 0, 120], q), "velocity_a": velocity, "max_time": 1},
     expect, "distance of a point from a box", allow=1e-9)
-row("box3d-32", "erincatto/box3d#32", "A box a tenth of a millimetre above another moves away", "a hit at fraction 0, in every direction",
+row("box3d-32", "erincatto/box3d#32", "A box a tenth of a millimetre above another moves away", "a hit at 0 whatever the direction, as for any start within the target distance",
     {"query": "linear_cast", "a": posed(box(1, 1, 1), [0, 2.0001, 0]), "b": box(1, 1, 1), "velocity_a": [0, 1, 0]}, {"hit": False},
     "the gap grows", pose="after the report")
-row("parry-107", "dimforge/parry#107", "A ball slides along a wall, which it is 3 mm deep in, in the plane", "no hit through the tree, a hit at 3.4e-8 without it",
+row("parry-107", "dimforge/parry#107", "A ball that is 0.0032 deep in a wall moves on into it, in the plane", "no hit with a tree of boxes, a hit at 3.4e-8 without",
     {"query": "linear_cast", "a": posed(ball(96), [216.02324, -1632.0032]), "b": posed(box(1280, 96), [0, -1824]), "velocity_a": [-636.3961, -636.3961], "max_time": 1 / 60},
     {"hit": True, "time": 0.0}, "it overlaps at the start")
 
@@ -246,10 +246,10 @@ row("ncollide-214", "dimforge/ncollide#214", "A square moves to a rectangle ten 
 
 # Turning casts, whose truths were found in ninety digits.
 TURNING = {
-    "physx-398": ("NVIDIAGameWorks/PhysX#398", "A box swings about a point 205 away", "what turns is let into what it hits"),
+    "physx-398": ("NVIDIAGameWorks/PhysX#398", "A box turns about a point 205 from its centre, into another", "the turning box penetrates the other"),
     "ncollide-369": ("dimforge/ncollide#369", "Two boxes move side by side at one velocity", "an endless loop"),
-    "godot-jolt-389": ("godot-jolt/godot-jolt#389", "A rod turns by half a turn within one step, past a ball", "tunnels: the turn is left out, as the documentation of Jolt says"),
-    "box2d-115": ("erincatto/box2d#115", "A long box and a square that turns by 0.26, in the plane", "touching, where there is a gap; an endless loop without taking whole turns off"),
+    "godot-jolt-389": ("godot-jolt/godot-jolt#389", "A rod turns by half a turn within one step, past a ball", "no hit: the cast leaves the turn out, as Jolt documents"),
+    "box2d-115": ("erincatto/box2d#115", "A long box and a square that turns by 0.26, in the plane", "touching, where there is a gap; an endless loop unless whole turns are taken off the angle"),
     "parry-317": ("dimforge/parry#317", "A turning box runs into another", "no collision"),
 }
 
@@ -274,9 +274,9 @@ turning("parry-317", {"a": posed(box(0.6, 0.4, 0.25), [0, 0, 0], [0, 0, 0.25, 1]
         {"hit": True, "time": 0.26465673739468115}, NINETY, allow=2.7e-8)
 
 # Distances.
-row("fcl-508", "flexible-collision-library/fcl#508", "Unit boxes four apart along y", "3.16228",
+row("fcl-508", "flexible-collision-library/fcl#508", "Unit boxes four apart along y", "3.16228 apart",
     {"query": "distance", "a": posed(box(0.5, 0.5, 0.5), [0, 4, 0]), "b": box(0.5, 0.5, 0.5)}, {"distance": 3.0, "overlap": False}, "faces are parallel", allow=1e-12)
-row("fcl-275", "flexible-collision-library/fcl#275", "Spheres of radius 20 and 10, centres 40 apart along y", "25",
+row("fcl-275", "flexible-collision-library/fcl#275", "Spheres of radius 20 and 10, centres 40 apart along y", "25 apart",
     {"query": "distance", "a": ball(20), "b": posed(ball(10), [0, 40, 0])}, {"distance": 10.0, "overlap": False}, "40 − 20 − 10", allow=1e-12)
 row("fcl-127", "flexible-collision-library/fcl#127", "A unit sphere and a box", "the distance is right, the nearest points are not",
     {"query": "distance", "a": ball(1), "b": posed(box(5, 1, 5), [0, 5, 3])}, {"distance": 3.0, "overlap": False, "point_a": [0, 1, 0], "point_b": [0, 4, 0]},
@@ -284,18 +284,18 @@ row("fcl-127", "flexible-collision-library/fcl#127", "A unit sphere and a box", 
 a = affine(box(0.1815, 0.1385, 0.1815), [[0.9999195703, 0.01021849413, 0.007512347878], [-0.01021878248, 0.9999477869, -3.329855922e-17], [-0.007511955635, -7.676704888e-05, 0.9999717819]], [1.503354966, -0.8531707835, 0.7700092418])
 b = affine(box(0.1815, 0.1815, 0.1385), [[0.9998670967, -0.01297708324, 0.009868343982], [0.01297771517, 0.9999157859, 5.255670031e-17], [-0.009867512928, 0.0001280685574, 0.9999513067]], [1.48838308, -1.102020834, 0.4497073799])
 gap = signed_distance(a, b)
-row("coal-604", "coal-library/coal#604", "Two boxes nearly parallel and close", "totally wrong, with a tolerance above 1e-6",
+row("coal-604", "coal-library/coal#604", "Two boxes nearly parallel and close", "wrong with a tolerance above 1e-6",
     {"query": "distance", "a": a, "b": b}, {"distance": gap, "overlap": False}, "shortest vector to the difference", allow=1e-9)
-row("jitter-302", "notgiven688/jitterphysics2#302", "A unit box, and a cloud of one point", "the distance says apart, the overlap test says together",
+row("jitter-302", "notgiven688/jitterphysics2#302", "A unit box, and a cloud of one point", "apart by the distance, overlapping by the overlap test",
     {"query": "distance", "a": points([[1, 0, 0]]), "b": box(0.5, 0.5, 0.5)}, {"distance": 0.5, "overlap": False}, "the face is a plane", allow=1e-12)
 ax, ay = [90945.08, 91077.46, 91454.92, 91322.54], [54122.54, 53745.082, 53877.46, 54254.918]
 bx, by = [90919.64, 91162.62, 91480.36, 91237.38], [54037.383, 53719.637, 53962.617, 54280.363]
 prism = lambda x, y: points([[float(np.float32(p)), float(np.float32(q)), z] for z in (300, 0) for p, q in zip(x, y)])
-row("opengjk-52", "MattiaMontanari/openGJK#52", "Two boxes that overlap, far from the origin", "0.0032915156",
-    {"query": "distance", "precision": "f32", "a": prism(ax, ay), "b": prism(bx, by)}, {"distance": 0.0, "overlap": True}, "the same middle is in both", allow=0.0)
+row("opengjk-52", "MattiaMontanari/openGJK#52", "Two boxes that overlap, far from the origin", "0.0032915156 apart",
+    {"query": "distance", "precision": "f32", "a": prism(ax, ay), "b": prism(bx, by)}, {"distance": 0.0, "overlap": True}, "they have one centre", allow=0.0)
 
 # Depths and overlaps.
-row("libccd-25", "danfis/libccd#25", "Cubes of side 2, centres 1.9 apart along z", "depth 0, and a direction that is no number",
+row("libccd-25", "danfis/libccd#25", "Cubes of side 2, centres 1.9 apart along z", "0 deep, and a direction that is no number",
     {"query": "signed_distance", "a": posed(box(1, 1, 1), [0, 0, 1.9]), "b": box(1, 1, 1)}, {"signed_distance": float(mpf(1.9) - 2), "overlap": True}, "faces are parallel", allow=1e-12)
 seg = mpf(2.03114343)
 at = exact([-0.951660156, -2.09155273, -7.63574218])
@@ -326,7 +326,7 @@ row("ncollide-157", "dimforge/ncollide#157", "An upright cylinder and a cuboid",
     {"signed_distance": float(gap), "overlap": True}, "circle and rectangle in the plane", allow=1e-9)
 row("parry-34", "dimforge/parry#34", "A unit ball whose centre is a corner of the square", "no contact",
     {"query": "signed_distance", "a": posed(ball(1), [1, 1]), "b": box(1, 1)}, {"signed_distance": -1.0, "overlap": True}, "the ball has to leave by its radius", allow=1e-9)
-row("parry-315", "dimforge/parry#315", "Two unit boxes that touch by a face", "one point for both, and a normal along the face",
+row("parry-315", "dimforge/parry#315", "Two unit boxes that touch by a face", "one point of contact for both boxes, and a normal along the face",
     {"query": "signed_distance", "a": posed(box(0.5, 0.5, 0.5), [0.5, 0.5, 0.5]), "b": posed(box(0.5, 0.5, 0.5), [1.5, 0.5, 0.5])},
     {"signed_distance": 0.0, "overlap": True, "normal": [-1, 0, 0]}, "faces are parallel", allow=1e-12, allow_fields={"normal": 1e-9})
 row("parry-70", "dimforge/parry#70", "A capsule half in a cuboid", "no intersection, at some of 200 heights",
@@ -339,7 +339,7 @@ extent = mpf(0.07) * abs(axis[2]) + mpf(0.02) * sqrt(1 - axis[2] ** 2)
 row("newton-3773", "newton-physics/newton#3773", "A small cylinder in the middle of a triangle of 335 m", "58.8 m deep",
     {"query": "signed_distance", "a": posed(upright(cylinder(0.07, 0.02)), [28.87991333, 260.53430176, 0.00036136055], [-0.16498479, 0.36682746, -0.48718625, 0.77515626]),
      "b": {"type": "triangle", "points": [[0, 0, 0], [100, 320, 0], [0, 320, 0]]}},
-    {"signed_distance": float(mpf(0.00036136055) - extent), "overlap": True}, "how far the cylinder reaches across the plane", allow=1e-9)
+    {"signed_distance": float(mpf(0.00036136055) - extent), "overlap": True}, "how far the cylinder extends across the plane", allow=1e-9)
 mesh = [[-0.0611590669, -0.13801524, -0.158372656], [0.0620514415, 0.135089189, -0.159879193], [-0.105518319, -0.100999095, -0.188289702], [-0.107238553, -0.102976903, 0.1569262], [-0.0851279497, -0.122304708, 0.156887323], [-0.0590926372, -0.104567274, -0.242715642]]
 q = [0.0029009761, 0.0001424328, 0.8400087479, 0.5425650813]
 a, b = posed(points(mesh), [-0.141666584, 0, 0], q), posed(points(mesh), [0.141666584, 0, 0], q)
@@ -354,15 +354,15 @@ row("cgal-6626", "CGAL/cgal#6626", "The ellipsoid around a cube", "a cube was sa
 row("drake-20839", "RobotLocomotion/drake#20839", "The ellipse in a square whose half-spaces are given at any scale", "the solver failed",
     {"query": "inscribed_ellipsoid", "halfspaces": [{"normal": [1e-9, 0], "offset": 1e-9}, {"normal": [-1e12, 0], "offset": 1e12}, {"normal": [0, 3], "offset": 3}, {"normal": [0, -0.1], "offset": 0.1}]},
     {"log_det": 0.0}, "the unit disc", pose="after the report", allow=1e-9)
-row("volesti-418", "GeomScale/volesti#418", "The ellipse in a rectangle 1e7 times as long as wide", "called solved, and is not",
+row("volesti-418", "GeomScale/volesti#418", "The ellipse in a rectangle 1e7 times as long as wide", "an ellipsoid that need not be valid, and no failure, if the solver does not converge",
     {"query": "inscribed_ellipsoid", "halfspaces": [{"normal": [1, 0], "offset": 1}, {"normal": [-1, 0], "offset": 1}, {"normal": [0, 1], "offset": 1e-7}, {"normal": [0, -1], "offset": 1e-7}]},
     {"log_det": float(-2 * mp.log(mpf(1e-7)))}, "the rectangle's own ellipse", pose="after the report", allow=1e-7)
 
 # Rays.
-row("bepu-253", "bepu/bepuphysics2#253", "A ray from the middle of a cylinder along its axis", "no hit, though across the axis it is one",
+row("bepu-253", "bepu/bepuphysics2#253", "A ray from the middle of a cylinder along its axis", "no hit; a ray from there across the axis hits",
     {"query": "ray_cast", "target": cylinder(2, 3), "source": [0, 0, 0], "direction": [0, 1, 0]}, {"hit": True, "lambda": 0.0, "normal": None},
     "the source is inside")
-row("bvh-107", "svenstaro/bvh#107", "A ray across a box that is flat", "no hit",
+row("bvh-107", "svenstaro/bvh#107", "A ray across a box of no thickness", "no hit",
     {"query": "ray_cast", "target": posed(box(1, 1, 0), [0, 0, 1]), "source": [0, 0, 0], "direction": [0, 0, 1]}, {"hit": True, "lambda": 1.0},
     "the box is its face", allow=1e-12)
 row("collision-rs-17", "csherratt/collision-rs#17", "A ray beside a box, parallel to its faces", "a hit",
@@ -381,10 +381,10 @@ row("jolt-1554", "jrouwe/JoltPhysics#1554", "A ray that ends on a face", "an ass
 
 # Linear casts.
 ball_at, block, towards = [784.470154, -88.887802], [802.5, 0], [0.630261, -0.776384]
-row("ncollide-4", "dimforge/ncollide#4", "A ball half a unit beside a block, in the plane", "57.570999, at the far side of the block",
+row("ncollide-4", "dimforge/ncollide#4", "A ball half a unit beside a block, in the plane", "a hit at 57.570999, at the far side of the block",
     {"query": "linear_cast", "a": posed(ball(15), ball_at), "b": posed(box(2.5, 450), block), "velocity_a": towards},
     {"hit": True, "time": float((mpf(802.5) - mpf(2.5) - 15 - mpf(784.470154)) / mpf(0.630261))}, "the side is a line", allow=1e-9)
-row("ncollide-35", "dimforge/ncollide#35", "A ball moves to another, nine radii on either side apart", "0.496231",
+row("ncollide-35", "dimforge/ncollide#35", "A ball of radius 0.5 moves to another, whose centre is ten away", "a hit at 0.496231",
     {"query": "linear_cast", "a": ball(0.5), "b": posed(ball(0.5), [0, 10, 0]), "velocity_a": [0, 10, 0]}, {"hit": True, "time": 0.9}, "(10 − 1)/10", allow=1e-12)
 row("parry-19", "dimforge/parry#19", "A ball moves to a segment that was turned by a right angle, in the plane", "no hit",
     {"query": "linear_cast", "a": ball(0.5), "b": posed(segment([1, 1], [-1, 1]), rotation=-float(mp.pi / 2)), "velocity_a": [1, 0]},
@@ -399,10 +399,10 @@ row("physx-597", "NVIDIAGameWorks/PhysX#597", "An upright capsule moves to the e
 row("physx-600", "NVIDIAGameWorks/PhysX#600", "A capsule in a triangle moves in the triangle's plane", "the overlap at the start is missed",
     {"query": "linear_cast", "a": posed(capsule(1, 0.3), rotation=[0, 0, -1, 1]), "b": triangle([0, 0, 0], [1, 0, 0], [0, 0, -1]), "velocity_a": [-1, 0, 0], "max_time": 1},
     {"hit": True, "time": 0.0}, "a corner is on the axis")
-row("jolt-1734", "jrouwe/JoltPhysics#1734", "A cylinder falls on a box", "the axis is (−0.0118, −0.0081, 0.0118), where it is vertical",
+row("jolt-1734", "jrouwe/JoltPhysics#1734", "A cylinder falls on a box", "a contact axis of (−0.0118, −0.0081, 0.0118), where it is vertical",
     {"query": "linear_cast", "a": posed(cylinder(1.2, 0.75), [0.25, 5, 0.125]), "b": box(2, 1, 2), "velocity_a": [0, -1, 0]},
     {"hit": True, "time": float(5 - mpf(1.2) - 1), "normal": [0, 1, 0]}, "faces are parallel", pose="after the report", allow=1e-12, allow_fields={"normal": 1e-9})
-row("godot-85314", "godotengine/godot#85314", "A sphere falls on a box beside its middle", "a height that changes by more than 0.1 with the start",
+row("godot-85314", "godotengine/godot#85314", "A sphere falls on a box beside its middle", "heights of contact that differ by more than 0.1 with the start",
     {"query": "linear_cast", "a": posed(ball(0.5), [0.37, 3, 0.21]), "b": box(2, 0.5, 2), "velocity_a": [0, -1, 0]}, {"hit": True, "time": 2.0},
     "the top is a plane", pose="after the report", allow=1e-12)
 row("godot-103123", "godotengine/godot#103123", "A square a quarter above another moves down, 8000 from the origin, in the plane", "no collision, though the fraction is 0.25",
@@ -410,33 +410,33 @@ row("godot-103123", "godotengine/godot#103123", "A square a quarter above anothe
     {"hit": True, "time": 0.25}, "sides are parallel", pose="after the report", allow=1e-5)
 
 # Distances and overlaps.
-row("parry-431", "dimforge/parry#431", "A square and a rectangle, in the plane", "3.710461, and 3.5731668 in the other order",
+row("parry-431", "dimforge/parry#431", "A square and a rectangle, in the plane", "3.710461 apart, and 3.5731668 in the other order",
     {"query": "distance", "a": box(1, 1), "b": posed(box(1, 2), [-5.573167, 0])}, {"distance": float(mpf(5.573167) - 2), "overlap": False}, "sides are parallel", allow=1e-12)
 p, a, b = [1.10000002, -7.9000001, 16.5879993], [2.27699995, -7.9000001, 16.3180008], [-0.569999993, -8.10000038, 16.6070004]
-row("parry-76", "dimforge/parry#76", "A point and a triangle of which two corners are one point", "0",
+row("parry-76", "dimforge/parry#76", "A point and a triangle of which two corners are one point", "0 apart",
     {"query": "distance", "a": point(*p), "b": triangle(a, b, b)}, {"distance": float(to_segment(exact(p), exact(a), exact(b))), "overlap": False},
     "distance of a point from a segment", allow=1e-9)
-row("ncollide-314", "dimforge/ncollide#314", "The point of a ball of radius 5 that is nearest to (50, 0, 0)", "(1, 0, 0)",
+row("ncollide-314", "dimforge/ncollide#314", "A ball of radius 5 and the point (50, 0, 0)", "(1, 0, 0) as the nearest point of the ball",
     {"query": "distance", "a": ball(5), "b": point(50, 0, 0)}, {"distance": 45.0, "overlap": False, "point_a": [5, 0, 0]}, "50 − 5", allow=1e-12, allow_fields={"point_a": 1e-9})
-row("geometri-19", "RiSearcher/GeometRi.CSharp#19", "A point above a triangle", "0",
+row("geometri-19", "RiSearcher/GeometRi.CSharp#19", "A point above a triangle", "0 apart",
     {"query": "distance", "a": point(1, 1, 4), "b": triangle([0, 0, 0], [2, 0, 0], [0, 2, 0])}, {"distance": 4.0, "overlap": False}, "its foot is on the triangle's side", allow=1e-12)
-row("sceneview-1139", "sceneview/sceneview#1139", "Two segments at a right angle", "√5, between (0, 0, 0) and (1, 2, 0)",
+row("sceneview-1139", "sceneview/sceneview#1139", "Two segments at a right angle", "√5 apart, at (0, 0, 0) and (1, 2, 0)",
     {"query": "distance", "a": segment([0, 0, 0], [2, 0, 0]), "b": segment([1, 1, 0], [1, 3, 0])},
     {"distance": 1.0, "overlap": False, "point_a": [1, 0, 0], "point_b": [1, 1, 0]}, "the end of one is above the middle of the other", allow=1e-12,
     allow_fields={"point_a": 1e-9, "point_b": 1e-9})
-row("godot-55384", "godotengine/godot#55384", "Two parallel segments side by side", "no numbers",
+row("godot-55384", "godotengine/godot#55384", "Two parallel segments side by side", "points that are no numbers",
     {"query": "distance", "a": segment([1, 1, 0], [3, 1, 0]), "b": segment([0, 0, 0], [4, 0, 0])}, {"distance": 1.0, "overlap": False}, "they are parallel",
     pose="after the report", allow=1e-12)
 t1 = [[-0.37579435, 0.014414025, 0.3265663], [-0.37263185, 0.0108978925, 0.36118037], [-0.35647663, 0.03625821, 0.34328437]]
 t2 = [[0.23884095, -1.6477574, 0.116889484], [0.26891768, -1.6353351, 0.10821109], [0.26338503, -1.6657706, 0.10510237]]
-row("convex-body-17", "arlk/ConvexBodyProximityQueries.jl#17", "Two triangles far from one another", "0, and 1.7844534 in the other order",
+row("convex-body-17", "arlk/ConvexBodyProximityQueries.jl#17", "Two triangles far from one another", "0 apart, and 1.7844534 in the other order",
     {"query": "distance", "a": triangle(*t1), "b": triangle(*t2)}, {"distance": signed_distance(triangle(*t1), triangle(*t2)), "overlap": False},
     "shortest vector to the difference", allow=1e-9)
 p0, p1 = [44.2919, 39.7508, 18.8208], [[46.0659, 38.6251, 16.3637], [44.2764, 42.3867, 18.239], [50.0397, 38.4649, 19.9843], [47.1963, 40.4563, 19.1057], [48.0266, 38.5593, 18.2475], [45.1735, 40.495, 17.3336], [48.0415, 40.4456, 18.1963]]
 row("dolfinx-3653", "FEniCS/dolfinx#3653", "A point and the hull of seven points", "no answer: the limit of iterations is reached",
     {"query": "distance", "a": point(*p0), "b": points(p1)}, {"distance": signed_distance(point(*p0), points(p1)), "overlap": False}, "shortest vector to the difference", allow=1e-9)
 a, b = [[0.795121, -0.727851], [-0.178424, -0.989183], [-0.412644, -0.770664], [0.566564, 0.548772]], [[-0.211223, -0.511346], [-0.347973, 0.45872], [0.277308, 0.969689]]
-row("opengjk-3", "MattiaMontanari/openGJK#3", "A quadrilateral and a triangle that overlap, in the plane", "0.508965",
+row("opengjk-3", "MattiaMontanari/openGJK#3", "A quadrilateral and a triangle that overlap, in the plane", "0.508965 apart",
     {"query": "distance", "a": points(a), "b": points(b)}, {"distance": 0.0, "overlap": True}, "least support value along the sides of the difference", allow=0.0)
 assert signed_distance(points(a), points(b)) < 0
 row("meshes-810", "JuliaGeometry/Meshes.jl#810", "A box and a segment that passes it", "they intersect",
@@ -447,7 +447,7 @@ axes = float(sqrt(mpf(1.9)))
 row("lazysets-3833", "JuliaReach/LazySets.jl#3833", "A square and a disc beside its corner, in the plane; found in a review", "not disjoint",
     {"query": "distance", "a": box(1, 1), "b": {"type": "ellipsoid", "center": [2, -2], "semi_axes": [axes, axes]}}, {"distance": float(sqrt(mpf(2)) - mpf(axes)), "overlap": False},
     "√2 − √1.9", allow=1e-12)
-row("mujoco-1473", "google-deepmind/mujoco#1473", "A capsule above a box", "1, by MJX",
+row("mujoco-1473", "google-deepmind/mujoco#1473", "A capsule above a box", "1 apart, by MJX",
     {"query": "distance", "a": posed(upright(capsule(0.15, 0.15)), [0, 0, 1]), "b": box(0.1, 0.1, 0.1)}, {"distance": float(1 - 2 * mpf(0.15) - mpf(0.1)), "overlap": False},
     "the face is a plane", allow=1e-12)
 row("mathgeolib-51", "juj/MathGeoLib#51", "A triangle inside a box", "no intersection",
@@ -495,7 +495,7 @@ boxes("fcl-445", "flexible-collision-library/fcl#445", "Two upright boxes side b
        [[0.44171122913485860728, 0.8971572827861190591, -1.622764514865468214e-09], [-0.8971572827861190591, 0.44171122913485860728, -5.1621053952306079594e-09],
         [-3.9144271413829990148e-09, 3.7360349218094348098e-09, 1]], [1.1304016226141906376, 1.8410802645284281009, 0.44400006232932492933]))
 tilted = [[0.94096063217417758029, 0.29296840037289501035, 0.16959541586174811667], [-0.23569836841299879326, 0.92661523595848427348, -0.29296840037289506586], [-0.2429801799032638987, 0.23569836841299884878, 0.94096063217417758029]]
-boxes("fcl-493-second", "flexible-collision-library/fcl#493", "The same, pulled apart by rounding", OUTSIDE,
+boxes("fcl-493-second", "flexible-collision-library/fcl#493", "Two boxes of one orientation, apart by rounding", OUTSIDE,
       ([0.25, 0.25, 0.25], tilted, [0.073242100093223821977, 0.2316538089896212349, 1.3089245921032497399]), ([0.25, 0.25, 0.25], tilted, [0, 0, 1.25]))
 boxes("drake-21673", "RobotLocomotion/drake#21673", "Two boxes with one centre", OUTSIDE,
       ([0.050000000000000002776, 0.55000000000000004441, 0.2999999999999999889], [[0.00079632671073326442932, -0.99999968293183538748, 0], [0.99999968293183538748, 0.00079632671073326442932, 0], [0, 0, 1]],
@@ -524,13 +524,13 @@ edge = lambda y: to_cylinder([into([mpf(0.4) - mpf(0.15), y, mpf(0.26885) + mpf(
 row("drake-21234", "RobotLocomotion/drake#21234", "A cylinder that lies beside the edge of a board", OUTSIDE,
     {"query": "signed_distance", "a": affine(upright(cylinder(0.085, 0.041)), cyl, cyl_at), "b": posed(box(0.15, 0.3, 0.008), [0.4, 0, 0.26885])},
     {"signed_distance": float(least(edge, -0.3, 0.3)), "overlap": False}, "distance of a line from a cylinder", allow=1e-9)
-row("drake-8049", "RobotLocomotion/drake#8049", "A cylinder stands in a half-space, turned upside down", "0.001 deep, where upright it is 0.051",
+row("drake-8049", "RobotLocomotion/drake#8049", "A cylinder stands in a half-space, turned upside down", "0.001 deep; the same cylinder upright, 0.051",
     {"query": "signed_distance", "a": posed(upright(cylinder(0.05, 0.05)), [0, 0, -0.001], [1, 0, 0, 0]), "b": {"type": "half_space", "normal": [0, 0, 1], "offset": 0}},
     {"signed_distance": -float(mpf(0.05) + mpf(0.001)), "overlap": True}, "its base is a plane", pose="after the report", allow=1e-12)
-row("coal-779", "coal-library/coal#779", "Two flat cylinders side by side", "0.1, and not how far one is to be moved along x; withdrawn, as it is a convention",
+row("coal-779", "coal-library/coal#779", "Two flat cylinders side by side", "0.1 deep, where a depth along x was expected; withdrawn, since the depth is the shortest way out",
     {"query": "signed_distance", "a": posed(upright(cylinder(0.05, 0.25)), [0.1, 0, 0]), "b": upright(cylinder(0.05, 0.25))},
     {"signed_distance": -0.1, "overlap": True}, "their bases are parallel", pose="after the report", allow=1e-12)
-row("ncollide-256", "dimforge/ncollide#256", "A unit ball whose centre is a corner of the cube", "0",
+row("ncollide-256", "dimforge/ncollide#256", "A unit ball whose centre is a corner of the cube", "0 deep",
     {"query": "signed_distance", "a": posed(ball(1), [1, 1, 1]), "b": box(1, 1, 1)}, {"signed_distance": -1.0, "overlap": True}, "the ball has to leave by its radius", allow=1e-9)
 low, high = [114.899994, 703.65], [725.1, 1142.6]
 a = posed(box(*((h - l) / 2 for l, h in zip(low, high))), [(h + l) / 2 for l, h in zip(low, high)])
@@ -542,13 +542,13 @@ v1 = [[1.9408982677575293, 1.7555630101186028, 0.18558370457138618], [0.83257728
 v2 = [[0.13746727993941066, 0.20129636190312772, 0.34482818309629215], [0.5315223185064999, 0.859293459032485, 0.6275795914219559], [0.5810087058274663, 0.42871589938255994, 0.6201313431197037],
       [0.48395328848552066, 0.35710287272501984, 0.27586601014041534], [0.1586377710691551, 0.6421620047252284, 0.6487788989727401], [0.5185197562895357, 0.058044153658207476, 0.4020269780737239]]
 row("distance3d-27", "AlexanderFabisch/distance3d#27", "Two hulls of six points", "an error",
-    {"query": "signed_distance", "a": points(v1), "b": points(v2)}, {"signed_distance": signed_distance(points(v1), points(v2))}, FACETS, allow=1e-9)
+    {"query": "signed_distance", "a": points(v1), "b": points(v2)}, {"signed_distance": signed_distance(points(v1), points(v2))}, "shortest vector to the difference", allow=1e-9)
 # Two boxes that share half an edge.
 turn = [[0, 0, 1], [-0.5, 0.86602540378444, 0], [-0.86602540378444, -0.5, 0]]
 row("mathgeolib-12", "juj/MathGeoLib#12", "Two boxes that share half an edge", "no intersection",
     {"query": "signed_distance", "a": posed(box(0.5, 0.5, 0.5), [0.5, 0.5, 0.5]), "b": affine(posed(box(1, 1, 1), [1, 1, 1]), turn, [0, 0, 0])},
-    {"signed_distance": 0.0}, "the plane z = 0 parts them, and the origin is of both", allow=1e-12)
-row("mujoco-warp-1430", "google-deepmind/mujoco_warp#1430", "A small box a millimetre in one of 200 m", "deeper and deeper, then no contact, as the large one grows",
+    {"signed_distance": 0.0}, "the plane z = 0 separates them, and the origin is in both", allow=1e-12)
+row("mujoco-warp-1430", "google-deepmind/mujoco_warp#1430", "A small box a millimetre in one of 200 m", "a depth that grows with the large box, and then no contact",
     {"query": "signed_distance", "a": posed(box(0.1, 0.1, 0.1), [0, 0, 0.599]), "b": posed(box(100, 100, 0.25), [0, 0, 0.25])},
     {"signed_distance": float(mpf(0.599) - mpf(0.1) - mpf(0.5)), "overlap": True}, "faces are parallel", pose="after the report", allow=1e-12)
 rows = [[0.99996972084045410156, 0.00776371126994490623, -0.00043433305108919740], [-0.00776385562494397163, 0.99996984004974365234, -0.00033095158869400620], [0.00043175052269361913, 0.00033431366318836808, 0.99999988079071044922]]
@@ -557,10 +557,10 @@ z = exact(rows[2])
 reach = mpf(0.2) * abs(z[2]) + mpf(0.1) * sqrt(z[0] ** 2 + z[1] ** 2)
 row("mujoco-warp-657", "google-deepmind/mujoco_warp#657", "A cylinder stands on a box, tilted by half a thousandth", "bad contacts",
     {"query": "signed_distance", "a": affine(upright(cylinder(0.2, 0.1)), rows, at), "b": box(1, 1, 0.1)}, {"signed_distance": float(mpf(at[2]) - reach - mpf(0.1)), "overlap": True},
-    "how far the cylinder reaches across the top", allow=1e-9)
+    "how far the cylinder extends across the top", allow=1e-9)
 
 # Ellipsoids.
-row("volesti-325", "GeomScale/volesti#325", "The ellipse in a polygon", "an exception, in the plane",
+row("volesti-325", "GeomScale/volesti#325", "The ellipse in a square, in the plane", "an exception",
     {"query": "inscribed_ellipsoid", "halfspaces": [{"normal": [1, 0], "offset": 1}, {"normal": [-1, 0], "offset": 1}, {"normal": [0, 1], "offset": 1}, {"normal": [0, -1], "offset": 1}]},
     {"log_det": 0.0}, "the unit disc", pose="after the report", allow=1e-9)
 
