@@ -92,7 +92,7 @@ impl<S: SupportMap> Among<'_, S> {
     }
 
     /// [`ray_cast`](Self::ray_cast) for each of many rays, on all threads of the current [rayon](https://docs.rs/rayon)
-    /// pool.
+    /// pool, with the searches of [`ray_casts_into`](Self::ray_casts_into).
     #[cfg(feature = "rayon")]
     pub fn par_ray_casts(
         &self,
@@ -103,7 +103,13 @@ impl<S: SupportMap> Among<'_, S> {
         S: Sync,
     {
         use rayon::prelude::*;
-        rays.par_iter().map(|&ray| self.ray_cast(ray, options)).collect()
+        let each = |rays: &[Ray<S::Vector>]| {
+            let mut casts = [SceneCast::default(); BUNDLE];
+            let all = self.ray_casts_into(rays, options, &mut casts[..rays.len()]);
+            let of = |(k, &ray)| all.map_or_else(|_| self.ray_cast(ray, options), |()| Ok(casts[k]));
+            rays.iter().enumerate().map(of).collect::<Vec<_>>()
+        };
+        rays.par_chunks(BUNDLE).flat_map_iter(each).collect()
     }
 
     /// Whether the ray hits any body: a shadow ray.
