@@ -68,7 +68,7 @@ pub fn panels(points: &[Point]) -> Panels {
 /// What stands above a panel.
 fn title(set: &str) -> String {
     match set {
-        "overlap" => "overlap: yes or no".to_owned(),
+        "overlap" => "overlap: time only".to_owned(),
         set => asked_as(set).to_owned(),
     }
 }
@@ -98,7 +98,7 @@ mod tests {
                    overlap,theirs 1.2,9,9,0,0,0,0,,,,100.0\n";
         let panels = panels(&read(csv));
         let titles: Vec<&str> = panels.panels.iter().map(|panel| panel.title.as_str()).collect();
-        assert_eq!(titles, ["distance", "overlap: yes or no"], "those of the suite are left out");
+        assert_eq!(titles, ["distance", "overlap: time only"], "those of the suite are left out");
         let [ours, theirs] = panels.panels[0].marks.as_slice() else { panic!("two: {panels:?}") };
         assert!(ours.is_ours && !ours.is_single && ours.name == "ours f64", "{ours:?}");
         assert!(!theirs.is_ours && theirs.disproved == 2 && theirs.name == "theirs", "without its version: {theirs:?}");

@@ -159,7 +159,11 @@ fn many_rays<V: Space>(world: &World<V>, numbers: &mut Numbers) {
     let mut together: Vec<_> = rays.iter().map(|_| alone[0]).collect();
     all.ray_casts_into(&rays, options, &mut together).expect("good rays");
     #[cfg(feature = "rayon")]
-    assert_eq!(all.par_ray_casts(&rays, options), together.iter().map(|&cast| Ok(cast)).collect::<Vec<_>>());
+    assert_eq!(
+        all.par_ray_casts(&rays, options),
+        together.iter().map(|&cast| Ok(cast)).collect::<Vec<_>>(),
+        "in parallel"
+    );
     for ((ray, alone), together) in rays.iter().zip(&alone).zip(&together) {
         let answer = |cast: &SceneRayCast<V>| (cast.first, cast.lower, cast.undecided);
         assert_eq!(answer(together), answer(alone), "kind {}, {kind}, {ray:?}, {options:?}", world.kind);
