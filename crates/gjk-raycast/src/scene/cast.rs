@@ -66,7 +66,7 @@ impl<S: SupportMap> Among<'_, S> {
         assert_eq!(rays.len(), casts.len(), "there must be as many answers as rays");
         rays.iter().try_for_each(|ray| ray.check(&options))?;
         for (rays, casts) in rays.chunks(BUNDLE).zip(casts.chunks_mut(BUNDLE)) {
-            if self.bundle(rays, options, casts)?.is_none() {
+            if !self.bundle(rays, options, casts)? {
                 for (&ray, cast) in rays.iter().zip(casts) {
                     *cast = self.ray_cast(ray, options)?;
                 }
@@ -304,17 +304,17 @@ impl<S: SupportMap> Among<'_, S> {
         Ok(found.answer(work))
     }
 
-    /// The first hit of each of a few rays by one search; `None` if they are too far from one another for that to be
-    /// quicker.
+    /// The first hit of each of a few rays by one search. False, and nothing is written, if the rays are too far from one
+    /// another for that to be quicker.
     fn bundle(
         &self,
         rays: &[Ray<S::Vector>],
         options: RayCastOptions<S::Vector>,
         casts: &mut [SceneRayCast<S::Vector>],
-    ) -> Result<Option<()>, RayCastError> {
+    ) -> Result<bool, RayCastError> {
         let end = options.max_lambda;
         let swept: [_; BUNDLE] = core::array::from_fn(|k| swept_point(rays[k.min(rays.len() - 1)]));
-        let Some(around) = swept[1..].iter().try_fold(swept[0], |all, one| all.and(one)) else { return Ok(None) };
+        let Some(around) = swept[1..].iter().try_fold(swept[0], |all, one| all.and(one)) else { return Ok(false) };
         let (mut found, mut tested) = ([First::default(); BUNDLE], [0; BUNDLE]);
         let (mut limits, mut visited) = ([(end, usize::MAX); BUNDLE], 0);
         let work = self.in_order(&around, end, |index, _, body| {
@@ -335,14 +335,14 @@ impl<S: SupportMap> Among<'_, S> {
             Ok(ControlFlow::Continue((last, usize::MAX)))
         })?;
         if visited > MOST_VISITED {
-            return Ok(None);
+            return Ok(false);
         }
         for (k, cast) in casts.iter_mut().enumerate() {
             let mut work = Work { tested: tested[k], ..work };
             self.finish(&mut work);
             *cast = found[k].answer(work);
         }
-        Ok(Some(()))
+        Ok(true)
     }
 }
 
