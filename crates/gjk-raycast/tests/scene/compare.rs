@@ -48,7 +48,9 @@ pub(crate) fn ask<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut
         linear_cast(world, numbers, count);
         distances(world, numbers, count);
     }
-    many_rays(world, numbers);
+    if numbers.below(4) == 0 {
+        many_rays(world, numbers);
+    }
     motion_cast(world, numbers, count);
     pairs(world, numbers, count);
     contacts(world, numbers, count);
@@ -131,21 +133,18 @@ fn ray<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
 fn many_rays<V: Space>(world: &World<V>, numbers: &mut Numbers) {
     let (size, source) = scale(world, numbers);
     let middle: V = scale(world, numbers).1 - source;
-    let kind = numbers.below(3);
+    let (kind, near) = (numbers.below(4), 0.03 * middle.norm().as_f64());
     let mut rays: Vec<_> = (0..19)
         .map(|_| match kind {
-            0 => Ray { source, direction: middle + numbers.vector(0.01 * middle.norm().as_f64()) },
-            1 => Ray { source, direction: numbers.vector(size) },
-            _ => {
-                let size = [1e-9, 1.0][numbers.below(2)];
-                Ray { source: scale(world, numbers).1, direction: numbers.vector(size) }
-            }
+            0 => Ray { source, direction: middle + numbers.vector(near) },
+            1 => Ray { source: source + numbers.vector(near), direction: middle },
+            2 => Ray { source, direction: numbers.vector(size) },
+            _ => Ray { source: scale(world, numbers).1, direction: numbers.vector(size) },
         })
         .collect();
-    // Along axes, forwards and back, and much longer than the others.
-    for (k, ray) in rays.iter_mut().enumerate().filter(|(k, ray)| k % 5 == 4 || ray.direction == V::ZERO) {
-        let along = if k % 2 == 0 { 1.0 } else { -1.0 };
-        ray.direction = V::axis(k % V::DIM) * V::Scalar::from_f64([along, along * 1e12][k / 10]);
+    // The last ones go along axes, forwards and back, and one of them is much longer than the others.
+    for (k, ray) in rays.iter_mut().enumerate().filter(|(k, ray)| *k >= 16 || ray.direction == V::ZERO) {
+        ray.direction = V::axis(k % V::DIM) * V::Scalar::from_f64([1e12, -1.0, 1.0][k % 3]);
     }
     let mut options = RayCastOptions::default();
     match numbers.below(4) {

@@ -7,7 +7,7 @@ use convex_support::glam::{DQuat, DVec2, DVec3};
 use convex_support::{Ball, Capsule, Cuboid, Cylinder, Point, Posed, SupportMap, Triangle};
 use gjk_raycast::{
     BodyContact, ChainMotion, Contact, DistanceOptions, HalfSpace, LinearCastOptions, Motion, MotionCastOptions,
-    PairContact, Ray, RayCastError, RayCastOptions, RigidMotion, Scene, SceneError, contact, distance,
+    PairContact, Ray, RayCastError, RayCastOptions, RigidMotion, Scene, SceneCast, SceneError, contact, distance,
 };
 
 fn ball(x: f64) -> Posed<Ball<DVec3>> {
@@ -99,6 +99,29 @@ fn of_equals_the_lowest_index_whatever_the_order() {
     scene.insert(ball(0.0)).unwrap();
     let first = scene.all().ray_cast(along_x(), RayCastOptions::default()).unwrap().first.unwrap();
     assert_eq!(first.body, 0, "it is back, though last in the tree");
+}
+
+/// Of rays that share a search, some hit a near ball, and others only a far one, which the search has to reach.
+#[test]
+fn rays_side_by_side_share_a_search_and_no_hit() {
+    let places = std::iter::once([3.0, 0.0]).chain((0..40).map(|i| [40.0, 2.0 * f64::from(i)]));
+    let at = |[x, y]: [f64; 2]| Posed::translated(Ball::new(0.5).expect("a ball"), DVec3::new(x, y, 0.0));
+    let scene = Scene::new(places.map(|place| at(place).expect("a place"))).expect("bodies");
+    let rays: Vec<_> = (0..24)
+        .map(|k| DVec3::new(1.0, 0.01 + 0.02 * f64::from(k), 0.01))
+        .map(|direction| Ray { source: DVec3::NEG_Y * 0.2, direction })
+        .collect();
+    let mut casts = vec![SceneCast::default(); rays.len()];
+    scene.all().ray_casts_into(&rays, RayCastOptions::default(), &mut casts).expect("rays");
+    let alone = |&ray| scene.ray_cast(ray, RayCastOptions::default()).expect("a ray");
+    let first: Vec<_> = casts.iter().map(|cast| cast.first).collect();
+    assert_eq!(first, rays.iter().map(|ray| alone(ray).first).collect::<Vec<_>>(), "each as alone");
+    let (near, far) = (&first[0], first[8..].iter().flatten().any(|hit| hit.hit.lambda > 39.0));
+    assert!(near.is_some_and(|hit| hit.hit.lambda < 3.0) && far, "both are hit: {first:?}");
+    for bundle in casts.chunks(8) {
+        assert!(bundle.iter().all(|cast| cast.work.nodes == bundle[0].work.nodes), "one search: {bundle:?}");
+    }
+    assert!(rays.iter().zip(&casts).any(|(ray, cast)| cast.work.nodes != alone(ray).work.nodes), "of all");
 }
 
 #[test]
