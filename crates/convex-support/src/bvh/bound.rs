@@ -43,8 +43,8 @@ fn rounding<S: Scalar>() -> S {
     S::from_f64(8.0) * S::EPSILON
 }
 
-/// A lower bound on the time λ ≥ 0 at which a box that moves along a ray meets another box. The moving box has the given
-/// half extents, and its centre is at `source + λ·direction`. With half extents of zero this is a ray cast.
+/// A lower bound on the time λ ≥ 0 at which a box that moves along a ray meets another box. The moving box has the
+/// given half extents, and its centre is at `source + λ·direction`. With half extents of zero this is a ray cast.
 ///
 /// The moving box touches a box B where its centre is in B grown by the half extents, so that coordinate by coordinate
 ///
@@ -87,17 +87,15 @@ impl<V: Vector> SweptBox<V> {
         if !is_as_fast || (0..V::DIM).any(|i| is_back(self, i) != is_back(other, i)) {
             return None;
         }
-        let of = |i: usize| {
-            let least = V::Scalar::min_positive_value();
-            let first = self.from[0].get(i).max(other.from[0].get(i)) + least;
-            let last = self.from[1].get(i).min(other.from[1].get(i)) - least;
-            let [a, b] = [self.inverse.map(|v| v.get(i)), other.inverse.map(|v| v.get(i) * per_unit)];
-            let begin = if a[0].abs() < b[0].abs() { a[0] } else { b[0] };
-            let end = if a[1].abs() > b[1].abs() { a[1] } else { b[1] };
-            [first, last, begin, end]
-        };
-        let part = |k: usize| V::from_fn(|i| of(i)[k]);
-        Some(Self { from: [part(0), part(1)], inverse: [part(2), part(3)], unit: self.unit })
+        let least = V::splat(V::Scalar::min_positive_value());
+        let from = [self.from[0].max(other.from[0]) + least, self.from[1].min(other.from[1]) - least];
+        let [[fast, slow], others] = [self.inverse, other.inverse.map(|inverse| inverse * per_unit)];
+        let pick = |is_second: bool, a: V::Scalar, b: V::Scalar| if is_second { b } else { a };
+        let inverse = [
+            V::from_fn(|i| pick(others[0].get(i).abs() < fast.get(i).abs(), fast.get(i), others[0].get(i))),
+            V::from_fn(|i| pick(others[1].get(i).abs() > slow.get(i).abs(), slow.get(i), others[1].get(i))),
+        ];
+        Some(Self { from, inverse, unit: self.unit })
     }
 }
 

@@ -103,13 +103,13 @@ impl<S: SupportMap> Among<'_, S> {
         S: Sync,
     {
         use rayon::prelude::*;
-        let each = |rays: &[Ray<S::Vector>]| {
+        let each = rays.par_chunks(BUNDLE).flat_map_iter(|rays| {
             let mut casts = [SceneCast::default(); BUNDLE];
             let all = self.ray_casts_into(rays, options, &mut casts[..rays.len()]);
-            let of = |(k, &ray)| all.map_or_else(|_| self.ray_cast(ray, options), |()| Ok(casts[k]));
-            rays.iter().enumerate().map(of).collect::<Vec<_>>()
-        };
-        rays.par_chunks(BUNDLE).flat_map_iter(each).collect()
+            let of = move |(cast, &ray)| all.map_or_else(|_| self.ray_cast(ray, options), |()| Ok(cast));
+            casts.into_iter().zip(rays).map(of)
+        });
+        each.collect()
     }
 
     /// Whether the ray hits any body: a shadow ray.
@@ -304,8 +304,8 @@ impl<S: SupportMap> Among<'_, S> {
         Ok(found.answer(work))
     }
 
-    /// The first hit of each of a few rays by one search. False, and nothing is written, if the rays are too far from one
-    /// another for that to be quicker.
+    /// The first hit of each of a few rays by one search. False, and nothing is written, if the rays are too far from
+    /// one another for that to be quicker.
     fn bundle(
         &self,
         rays: &[Ray<S::Vector>],
@@ -315,8 +315,7 @@ impl<S: SupportMap> Among<'_, S> {
         let end = options.max_lambda;
         let swept: [_; BUNDLE] = core::array::from_fn(|k| swept_point(rays[k.min(rays.len() - 1)]));
         let Some(around) = swept[1..].iter().try_fold(swept[0], |all, one| all.and(one)) else { return Ok(false) };
-        let (mut found, mut tested) = ([First::default(); BUNDLE], [0; BUNDLE]);
-        let (mut limits, mut visited) = ([(end, usize::MAX); BUNDLE], 0);
+        let (mut found, mut tested, mut visited) = ([First::default(); BUNDLE], [0; BUNDLE], 0);
         let work = self.in_order(&around, end, |index, _, body| {
             let around = self.scene.tree.get(index);
             visited += usize::from(around.is_some());
@@ -325,13 +324,13 @@ impl<S: SupportMap> Among<'_, S> {
             }
             for (k, &ray) in rays.iter().enumerate() {
                 let from = around.map_or(Scalar::ZERO, |around| swept[k].bound(&around));
-                let limit = limits[k];
-                if from < ScalarOf::<S>::infinity() && (from < limit.0 || from == limit.0 && index < limit.1) {
+                if from < ScalarOf::<S>::infinity() && (from, index) < found[k].limit(end) {
                     found[k].add(index, from, &body.ray_cast(ray, options)?, |hit| hit.lambda);
-                    (limits[k], tested[k]) = (found[k].limit(end), tested[k] + 1);
+                    tested[k] += 1;
                 }
             }
-            let last = limits[..rays.len()].iter().fold(limits[0].0, |last, limit| Float::max(last, limit.0));
+            let limits = found[..rays.len()].iter().map(|found| found.limit(end).0);
+            let last = limits.fold(ScalarOf::<S>::neg_infinity(), Float::max);
             Ok(ControlFlow::Continue((last, usize::MAX)))
         })?;
         if visited > MOST_VISITED {

@@ -86,7 +86,8 @@ impl<S: Scalar> ClippedLines<S> {
 }
 
 /// `clip` for many lines, each by one plane after the other; for one line, planes are side by side. Among planes that
-/// are entered at the same parameter both find the same one: the first of the first row.
+/// are entered at the same parameter both find the same one: the first of the first row. A step that both share takes
+/// 1.1 to 2 times as long in one of them, since compilers choose by other instructions where the planes lie otherwise.
 #[inline(always)]
 fn clip_lines<S: Scalar>(
     planes: &[Planes<S>],
