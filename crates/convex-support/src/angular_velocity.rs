@@ -1,6 +1,5 @@
 //! Angular velocities: a number in 2D, a vector in 3D.
 
-use core::fmt::Debug;
 use core::marker::PhantomData;
 
 use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat2, Mat3, Mat3A, Quat, Vec2, Vec3, Vec3A};
@@ -9,100 +8,7 @@ use crate::numerics::elementary::{atan2, sin_cos};
 use crate::numerics::range::comfortable_unit_of_length;
 use crate::numerics::twofold::{dot_minus, two_product};
 use crate::sealed::Sealed;
-use crate::{Scalar, Vector, Vector3};
-
-/// An angular velocity `ω` in the space of `V`, in radians per unit of time: a number in 2D, counterclockwise; in 3D a
-/// vector along the axis, after the right-hand rule.
-///
-/// The trait is sealed; [`Vector::AngularVelocity`] says which type turns which vectors.
-pub trait AngularVelocity<V: Vector>:
-    Copy + Debug + Default + PartialEq + Send + Sync + 'static + Sealed + data::Data
-{
-    /// A bound on the error of [`turn`](Self::turn) as an operator, relative to the square root of the sum of its
-    /// squared entries and in units of the scalar's epsilon.
-    const TURN_ERROR: f64;
-
-    /// The type of a rotation at this velocity.
-    type Spin: Spin<V>;
-
-    /// The matrix `W` with `W·x = ω × x`.
-    fn cross_matrix(self) -> V::Matrix;
-
-    /// The rotation at this velocity, prepared for many times.
-    fn spin(self) -> Self::Spin;
-
-    /// The matrix `R − 1` with `R` the rotation by `|ω|·time` about `ω`: what the rotation adds to a vector. It is
-    /// small if the angle is small, and its error is relative to its size.
-    ///
-    /// The angle may be many turns, since it is computed in twice the precision. Beyond 2⁵⁰ this is not enough, and the
-    /// matrix consists of NaNs.
-    #[inline]
-    fn turn(self, time: V::Scalar) -> V::Matrix {
-        self.spin().turn(time)
-    }
-
-    /// The constant angular velocity that turns `from` into `to` within one unit of time, the short way round.
-    /// Quaternions need not be unit; the result is of NaNs if one of them is no rotation.
-    fn between(from: V::Rotation, to: V::Rotation) -> Self;
-
-    /// The angular velocity `factor` times as fast.
-    #[must_use]
-    fn scaled(self, factor: V::Scalar) -> Self;
-
-    /// The first coordinate that is not finite, counted from 0.
-    fn non_finite(self) -> Option<usize>;
-
-    /// The moment of a force at the end of an arm: `arm × force`, in 2D its only coordinate. So for any `ω`
-    ///
-    /// > moment(arm, force)·ω = force·(ω × arm).
-    ///
-    /// ```
-    /// use convex_support::{AngularVelocity, glam::{DVec2, DVec3}};
-    ///
-    /// assert_eq!(<f64 as AngularVelocity<DVec2>>::moment(DVec2::X * 3.0, DVec2::Y), 3.0);
-    /// let moment = <DVec3 as AngularVelocity<DVec3>>::moment(DVec3::X * 3.0, DVec3::Y);
-    /// assert_eq!(moment, DVec3::Z * 3.0);
-    /// ```
-    fn moment(arm: V, force: V) -> Self;
-
-    /// Coordinate `index`, counted from 0, of the one in 2D or the three in 3D.
-    ///
-    /// # Panics
-    /// If there is no such coordinate.
-    fn coordinate(self, index: usize) -> V::Scalar;
-
-    /// The angular velocity whose coordinate `i` is `f(i)`.
-    fn from_coordinates(f: impl FnMut(usize) -> V::Scalar) -> Self;
-}
-
-/// A rotation at a constant [angular velocity](AngularVelocity). Everything that does not depend on time is computed
-/// once.
-///
-/// ```
-/// use convex_support::{AngularVelocity, Spin, glam::DVec3};
-///
-/// // A quarter of a turn about z within a second.
-/// let spin = (DVec3::Z * std::f64::consts::FRAC_PI_2).spin();
-/// for (time, to) in [(0.0, DVec3::X), (1.0, DVec3::Y), (2.0, -DVec3::X)] {
-///     assert!((DVec3::X + spin.turn(time) * DVec3::X - to).length() < 1e-15);
-/// }
-/// ```
-pub trait Spin<V: Vector>: Copy + Debug + Send + Sync + 'static + Sealed {
-    /// The displacement of a vector by the rotation after `time`, as by [`AngularVelocity::turn`].
-    fn turn(&self, time: V::Scalar) -> V::Matrix;
-}
-
-mod data {
-    /// The traits of data with serde, so that no type with an angular velocity has to name them.
-    #[cfg(feature = "serde")]
-    pub trait Data: serde::Serialize + serde::de::DeserializeOwned {}
-    #[cfg(feature = "serde")]
-    impl<T: serde::Serialize + serde::de::DeserializeOwned> Data for T {}
-    #[cfg(not(feature = "serde"))]
-    pub trait Data {}
-    #[cfg(not(feature = "serde"))]
-    impl<T> Data for T {}
-}
+use crate::{AngularVelocity, Scalar, Spin, Vector, Vector3};
 
 /// Angular velocities of the plane, where with `h` half the angle `R − 1 = 2·sin h·(−sin h, −cos h; cos h, −sin h)`.
 ///

@@ -68,6 +68,7 @@ extern crate alloc;
 extern crate std;
 
 mod angular_velocity;
+mod ball_support;
 mod bounds;
 mod bvh;
 mod closest_point;
@@ -101,11 +102,11 @@ mod vector;
 
 pub use glam;
 
-pub use angular_velocity::{AngularVelocity, Spin};
 pub use bounds::{Aabb, BoundingSphere, bounding_box, bounding_sphere};
+pub use bvh::pairs::PairSearch;
 pub use bvh::{
-    Bound, BoxDistance, Boxes, Bvh, CoarseBound, CoarseBoxDistance, CoarseSweptBox, CoarseUnit, Frame, PairSearch,
-    SweptBox, WIDTH, outer_box,
+    Bound, BoxDistance, Boxes, Bvh, CoarseBound, CoarseBoxDistance, CoarseSweptBox, CoarseUnit, Frame, SweptBox, WIDTH,
+    outer_box,
 };
 pub use closest_point::closest_point;
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};
@@ -122,19 +123,19 @@ pub use interop_parry::parry2d_f64;
 pub use interop_parry::parry3d;
 #[cfg(feature = "parry3d-f64")]
 pub use interop_parry::parry3d_f64;
+pub use line_crossing::crossed_by_line::{CrossedByLine, line_crossing};
 #[doc(hidden)]
 pub use line_crossing::lanes::{LINES, Lines};
-pub use line_crossing::{CertainCrossing, CrossedByLine, Crossing, LineCrossing, LineQuery, line_crossing};
+pub use line_crossing::{CertainCrossing, Crossing, LineCrossing, LineQuery};
 pub use motion_derivative::{MotionGradient, MotionHessian};
 pub use parallelotope::Parallelotope;
-pub use rotation::Rotation;
 pub use scalar::Scalar;
 #[cfg(feature = "hull")]
 pub use shapes::Faceted;
 pub use shapes::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Segment, Triangle};
 pub use support::{ScalarOf, SupportMap, support_value};
 pub use support_feature::{Feature, Rim};
-pub use vector::{Matrix, Vector, Vector3};
+pub use vector::{AngularVelocity, Matrix, Rotation, Spin, Vector, Vector3};
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

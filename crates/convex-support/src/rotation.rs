@@ -1,39 +1,11 @@
 //! The rotations of a space: an angle in 2D, a quaternion in 3D.
 
-use core::fmt::Debug;
-
 use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, DVec4, Mat2, Mat3, Mat3A, Quat, Vec2, Vec3, Vec3A};
 
-use crate::Vector;
+use crate::Rotation;
 use crate::error::InvalidShape;
 use crate::numerics::elementary::{atan2, sin_cos};
 use crate::numerics::range::is_comfortable;
-use crate::sealed::Sealed;
-
-/// A rotation of the space of `V`: an angle in radians in 2D, a quaternion of any length in 3D.
-///
-/// Its meaning is exact: the sine and cosine of the angle, and the quaternion divided by its length. The trait is
-/// sealed; [`Vector::Rotation`] says which type rotates which vectors.
-pub trait Rotation<V: Vector>: Copy + Debug + Default + PartialEq + Send + Sync + 'static + Sealed {
-    /// A bound on the rounding error of each entry of [`matrix`](Self::matrix), in units of the scalar's epsilon.
-    const MATRIX_ERROR: f64;
-
-    /// A bound on how far the matrix moves a unit vector from where the rotation does, in the same units.
-    const OPERATOR_ERROR: f64;
-
-    /// The rotation of the quaternion `x·i + y·j + z·k + w`; in 2D by its angle about `z`, `2·atan2(z, w)`.
-    fn from_xyzw(quaternion: [V::Scalar; 4]) -> Self;
-
-    /// The matrix; of NaNs if there is none.
-    fn matrix(self) -> V::Matrix;
-
-    /// The rotation if it has a matrix.
-    ///
-    /// # Errors
-    /// [`InvalidShape::NonFinite`] naming the number that is not finite, [`InvalidShape::ZeroRotation`] for the zero
-    /// quaternion.
-    fn checked(self, parameter: &'static str) -> Result<Self, InvalidShape>;
-}
 
 /// Rotations of the plane, whose sines and cosines are right to less than an ulp.
 macro_rules! angle {

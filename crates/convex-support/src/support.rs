@@ -2,8 +2,8 @@
 
 use num_traits::Float as _;
 
+use crate::ball_support::swept;
 use crate::numerics::bound::roundings;
-use crate::numerics::range::is_comfortable;
 use crate::{CertainCrossing, Core, CoreKind, Feature, Hint, LineQuery, Parallelotope, Rounding, Scalar, Vector};
 
 /// A nonempty, closed, bounded convex set, known by its support mapping.
@@ -190,34 +190,6 @@ pub type ScalarOf<S> = <<S as SupportMap>::Vector as Vector>::Scalar;
 pub(crate) fn support_of_parts<S: SupportMap + ?Sized>(shape: &S, direction: S::Vector) -> S::Vector {
     let Core { origin, radius, .. } = shape.core();
     origin + shape.core_support(direction, &mut Hint::new()) + swept(radius, direction)
-}
-
-/// The point of the ball of the given radius about zero farthest along `direction`.
-#[inline]
-pub(crate) fn swept<V: Vector>(radius: V::Scalar, direction: V) -> V {
-    if radius == V::Scalar::ZERO {
-        return V::ZERO;
-    }
-    direction.unit().unwrap_or_else(|| V::axis(0)) * radius
-}
-
-/// The Hessian of the support value of a ball of the given radius about zero, applied to two changes: with `e` the
-/// unit direction and `c` the length of the direction, `r/c·(u·w − (u·e)·(w·e))`.
-#[inline(always)]
-pub(crate) fn swept_hessian<V: Vector>(radius: V::Scalar, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
-    if radius == V::Scalar::ZERO {
-        return [V::Scalar::ZERO; 3];
-    }
-    let (mut direction, mut radius, mut squared) = (direction, radius, direction.length_squared());
-    if !is_comfortable(squared) {
-        // Of a unit direction, and once for its length.
-        let Some(e) = direction.unit() else { return [V::Scalar::ZERO; 3] };
-        (radius, direction, squared) = (radius / direction.norm(), e, e.length_squared());
-    }
-    let across = |change: V| change - direction * (change.dot(direction) / squared);
-    let (u, w) = (across(changes[0]), across(changes[1]));
-    let bend = radius / squared.sqrt();
-    [u.dot(u) * bend, u.dot(w) * bend, w.dot(w) * bend]
 }
 
 /// The sum of two Hessians.

@@ -2,8 +2,8 @@
 
 use num_traits::Float as _;
 
+use crate::ball_support::swept;
 use crate::numerics::elementary::sin_cos;
-use crate::support::swept;
 use crate::{Scalar, Vector, Vector3};
 
 /// The most points that a feature may have. If a face has more corners, some that span it are taken.

@@ -94,7 +94,7 @@ pub use convex_support;
 pub use batch::{free_margins, free_margins_into, map_margins, map_margins_into, map_pairs};
 pub use clearance::{Clearance, ClearanceResult, LeftOut, NearPair, clearance};
 pub use convex_support::{MotionGradient, MotionHessian};
-pub use derivative::ShapeGradient;
+pub use derivative::shape::ShapeGradient;
 pub use distance::{Distance, DistanceBracket, distance, distance_bracket};
 pub use ellipsoid_pair::{Answer, EllipsoidPair};
 pub use error::InvalidQuery;

@@ -94,11 +94,11 @@ pub use dynamic::{
     EllipsoidDyn, EnclosingDyn, InscribedDyn, enclosing_dyn, enclosing_dyn_with, inscribed_dyn, inscribed_in_hull_dyn,
 };
 pub use ellipsoid::Ellipsoid;
-pub use enclosing::{Enclosing, EnclosingIterate, MovingPoints, enclosing, enclosing_with};
+pub use enclosing::moving_points::MovingPoints;
+pub use enclosing::{Enclosing, EnclosingIterate, enclosing, enclosing_with};
 pub use error::{EnclosingError, InscribedError};
-pub use inscribed::{
-    HalfSpace, Inscribed, InscribedIterate, inscribed, inscribed_in_hull, inscribed_in_hull_with, inscribed_with,
-};
+pub use inscribed::in_hull::{inscribed_in_hull, inscribed_in_hull_with};
+pub use inscribed::{HalfSpace, Inscribed, InscribedIterate, inscribed, inscribed_with};
 pub use options::{EnclosingMethod, EnclosingOptions, FlatPolicy, InscribedOptions, Status};
 pub use weight::Weight;
 

@@ -6,7 +6,7 @@ mod change;
 mod frame;
 mod node;
 mod outer_box;
-mod pairs;
+pub(crate) mod pairs;
 mod search;
 
 use alloc::vec::Vec;
@@ -18,7 +18,6 @@ pub use self::frame::{CoarseUnit, Frame};
 pub use self::node::{Boxes, WIDTH};
 use self::node::{Node, Slot};
 pub use self::outer_box::outer_box;
-pub use self::pairs::PairSearch;
 
 /// A tree over the boxes of items, which the caller names by numbers from 0 to 2³⁰ − 1.
 ///

@@ -2,7 +2,8 @@
 
 use num_traits::Float as _;
 
-use crate::shapes::{across, clamp_to_segment};
+use super::segment::clamp_to_segment;
+use crate::shapes::axial::across;
 use crate::{Scalar, Vector3};
 
 /// In the half plane through the axis and `x`, with `ρ` the distance from the axis, the cone of half height `h` and

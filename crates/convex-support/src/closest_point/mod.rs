@@ -2,10 +2,12 @@
 
 mod cone;
 mod ellipsoid;
+mod segment;
 mod triangle;
 
 pub(crate) use cone::closest_of_cone;
 pub(crate) use ellipsoid::closest_of_ellipsoid;
+pub(crate) use segment::clamp_to_segment;
 pub(crate) use triangle::closest_of_triangle;
 
 use crate::{Core, SupportMap, Vector};

@@ -1,14 +1,15 @@
 //! The point of a triangle nearest a given point.
 
-use crate::shapes::{PlanarTriangle, clamp_to_segment};
-use crate::{Scalar, Triangle, Vector};
+use super::segment::clamp_to_segment;
+use crate::shapes::planar_triangle::{PlanarTriangle, longest_edge_first};
+use crate::{Scalar, Vector};
 
 /// Outside, the answer is the foot on an edge that has the point on its outer side, or else a corner. Comparing the
 /// distances of all three edges instead would lose half the digits, since a distance is flat at its minimum.
-pub(crate) fn closest_of_triangle<V: Vector>(triangle: &Triangle<V>, x: V) -> V {
-    let Some(PlanarTriangle { corners: [a, b, c], axes: [u, v], length, along, height }) = triangle.in_its_plane()
+pub(crate) fn closest_of_triangle<V: Vector>(corners: [V; 3], x: V) -> V {
+    let Some(PlanarTriangle { corners: [a, b, c], axes: [u, v], length, along, height }) = PlanarTriangle::new(corners)
     else {
-        let [a, b, _] = triangle.longest_edge_first();
+        let [a, b, _] = longest_edge_first(corners);
         return clamp_to_segment([a, b], x);
     };
     let (p, q) = (u.dot(x - a), v.dot(x - a));

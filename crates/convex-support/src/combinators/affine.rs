@@ -3,12 +3,13 @@
 use num_traits::Float as _;
 
 use super::placement::{Placement, is_near, length_of_error, lost_in_origin};
+use crate::ball_support::{swept, swept_hessian};
 use crate::error::{InvalidShape, finite, finite_matrix};
 use crate::line_crossing::NearLine;
 use crate::numerics::bound::roundings;
 use crate::numerics::range::power_of_two_below;
 use crate::numerics::twofold::dot_minus;
-use crate::support::{ScalarOf, sum_of_hessians, swept, swept_hessian};
+use crate::support::{ScalarOf, sum_of_hessians};
 use crate::{
     CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Matrix, Parallelotope,
     Rounding, Scalar, SupportMap, Vector,

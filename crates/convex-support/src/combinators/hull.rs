@@ -2,9 +2,10 @@
 
 use num_traits::Float as _;
 
+use crate::ball_support::{swept, swept_hessian};
 use crate::numerics::bound::{roundings, roundings_of};
 use crate::numerics::twofold::{lost_in_sum, two_sum};
-use crate::support::{ScalarOf, sum_of_hessians, support_of_parts, swept, swept_hessian};
+use crate::support::{ScalarOf, sum_of_hessians, support_of_parts};
 use crate::{Core, CoreKind, Hint, Rounding, Scalar, SupportMap, Vector};
 
 /// The convex hull of the union of two shapes. Nest it for more than two.

@@ -13,8 +13,8 @@ use super::{Chord, Crossed, Crossing, Spine, across_two_axes, axis_of, past_rim,
 use crate::numerics::bound::roundings;
 use crate::numerics::range::{is_comfortable, is_moderate};
 use crate::numerics::twofold::{foot_from, lost_in_sum, two_sum};
-use crate::shapes::across;
-use crate::{Cone, Matrix, Scalar, Vector, Vector3};
+use crate::shapes::axial::{ConeMeasures, across};
+use crate::{Matrix, Scalar, Vector, Vector3};
 
 /// A line, for the [certain crossing](crate::SupportMap::certain_crossing) of a shape.
 // A number is between the vectors. Side by side like those of a ray, they are copied in pieces of two numbers, one of
@@ -493,9 +493,9 @@ impl<V: Vector3> NearLine<V> {
     /// `(cos²α·(ρ·d) + sin²α·(h − y)·d_y)/(sinα·(h − y))`. As for a [swept set](Self::swept), two points of the line
     /// are measured.
     #[inline(always)]
-    pub(crate) fn cone(&self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
+    pub(crate) fn cone(&self, shape: &ConeMeasures<V::Scalar>) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
-        let (h, (cosine, sine)) = (shape.half_height(), shape.slant());
+        let (h, (cosine, sine)) = (shape.half_height, shape.slant);
         let Crossing { entry, normal, .. } = match super::cone(shape, source, direction) {
             Ok(crossing) => crossing,
             Err(axis) => {
@@ -597,8 +597,8 @@ fn least_chord<S: Scalar>() -> S {
 
 /// The support value of a cone along an axis: at its apex, or at its base.
 #[inline(always)]
-pub(super) fn cone_reach<V: Vector3>(shape: &Cone<V>, axis: V) -> V::Scalar {
-    let (apex, middle) = (shape.half_height() * axis.get(1), shape.disc_radius() * across(axis).length());
+pub(super) fn cone_reach<V: Vector3>(shape: &ConeMeasures<V::Scalar>, axis: V) -> V::Scalar {
+    let (apex, middle) = (shape.half_height * axis.get(1), shape.radius * across(axis).length());
     apex.max(middle - apex)
 }
 

@@ -15,8 +15,8 @@ use super::{CertainCrossing, Crossed, LineQuery, NearLine, Spine, axis_of};
 use crate::numerics::bounded::Bounded;
 use crate::numerics::elementary::hypot;
 use crate::numerics::range::power_of_two_below;
-use crate::shapes::across;
-use crate::{Cone, Scalar, SupportMap as _, Vector, Vector3};
+use crate::shapes::axial::{ConeMeasures, across};
+use crate::{Scalar, Vector, Vector3};
 
 /// A segment about an origin along the second axis, swept by a ball, or a ball.
 #[cold]
@@ -61,8 +61,8 @@ pub(crate) fn cuboid<V: Vector>(line: LineQuery<V>, half_extents: V) -> Option<C
 /// A cone about the second axis.
 #[cold]
 #[inline(never)]
-pub(crate) fn cone<V: Vector3>(line: LineQuery<V>, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
-    let (half_height, radius, (cosine, sine)) = (shape.half_height(), shape.disc_radius(), shape.slant());
+pub(crate) fn cone<V: Vector3>(line: LineQuery<V>, shape: &ConeMeasures<V::Scalar>) -> Option<CertainCrossing<V>> {
+    let ConeMeasures { half_height, radius, extent, slant: (cosine, sine) } = *shape;
     // A disc and a segment have no opening angle.
     if !(half_height.min(radius) > V::Scalar::ZERO) {
         return None;
@@ -74,7 +74,7 @@ pub(crate) fn cone<V: Vector3>(line: LineQuery<V>, shape: &Cone<V>) -> Option<Ce
     };
     let crossed = |source, direction| super::cone(shape, source, direction);
     let solid = |f: InUnits<'_, V>| Solid::upright(CloseLine::cone, f(half_height), f(radius));
-    closely(line, V::ZERO, shape.core().extent, solid, outward, crossed, |axis| cone_reach(shape, axis))
+    closely(line, V::ZERO, extent, solid, outward, crossed, |axis| cone_reach(shape, axis))
 }
 
 /// A cylinder about the second axis.

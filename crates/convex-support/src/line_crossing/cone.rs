@@ -3,17 +3,17 @@
 use num_traits::Float as _;
 
 use super::{Crossed, Crossing, comfortable, cylinder, past_rim, rebased, slab};
-use crate::shapes::across;
-use crate::{Cone, Scalar, Vector3};
+use crate::shapes::axial::{ConeMeasures, across};
+use crate::{Scalar, Vector3};
 
 /// Within its slab, the cone is `F(x) ≤ 0` below the apex, with `F(x) = cos²α·(x² + z²) − sin²α·(h − y)²` and `α` half
 /// the opening angle. Along the line, counted from the apex, `F = Aλ² + 2Bλ + C`; and by Lagrange's identity the
 /// discriminant is, with the moment `m = p × d`, `B² − AC = cos²α·(sin²α·(m_x² + m_z²) − cos²α·m_y²)`: no difference
 /// of the products of `B` and `AC` is formed.
 #[inline(always)]
-pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Crossed<V> {
+pub(crate) fn cone<V: Vector3>(cone: &ConeMeasures<V::Scalar>, source: V, direction: V) -> Crossed<V> {
     let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
-    let (h, r) = (cone.half_height(), cone.disc_radius());
+    let (h, r) = (cone.half_height, cone.radius);
     if h == zero || r == zero {
         return flat(h, r, source, direction);
     }
@@ -28,7 +28,7 @@ pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Cross
     let (y, rise) = (source.get(1), direction.get(1));
     let (top, bottom) = slab(y + h, rise, h);
 
-    let (cosine, sine) = cone.slant();
+    let (cosine, sine) = cone.slant;
     let (out, radial) = (across(source) * cosine, across(direction) * cosine);
     let (drop, fall) = (-sine * y, -sine * rise);
     let a = radial.length_squared() - fall * fall;
@@ -89,9 +89,9 @@ pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Cross
 /// the rim, or beyond one of the two planes along it that touch the slant all along: their normals `cosα·u + sinα·y`,
 /// with a unit vector `u` across the axis, are across the direction `d` if `u·d = −tanα·d_y`.
 #[inline(always)]
-fn beside<V: Vector3>(cone: &Cone<V>, source: V, direction: V, at: V::Scalar) -> V {
+fn beside<V: Vector3>(cone: &ConeMeasures<V::Scalar>, source: V, direction: V, at: V::Scalar) -> V {
     let beyond_rim = past_rim(source, direction, at);
-    let (cosine, sine) = cone.slant();
+    let (cosine, sine) = cone.slant;
     // The apex is farther than the base along that vector.
     if !(cosine * beyond_rim.get(1) > sine * across(beyond_rim).length()) {
         return beyond_rim;

@@ -3,7 +3,7 @@
 use num_traits::Float as _;
 
 use super::{Chord, Crossed, Crossing, comfortable, past_rim, rebased, slab};
-use crate::shapes::across;
+use crate::shapes::axial::across;
 use crate::{Scalar, Vector3};
 
 /// The crossing of the cylinder of radius `r` about the second axis.

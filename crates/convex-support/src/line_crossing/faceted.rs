@@ -6,21 +6,21 @@ use num_traits::Float as _;
 
 use super::{CertainCrossing, Crossed, Crossing, NearLine, comfortable, rebased};
 use crate::shapes::{PLANES, Planes, facet};
-use crate::{Faceted, Scalar, Vector};
+use crate::{Scalar, Vector};
 
 /// The line is in the hull while it is behind all facets. The exit and the entry are the least and the largest of the
 /// `λ` where it leaves, or enters, the half-space of a facet.
 #[inline]
-pub(crate) fn faceted<V: Vector>(hull: &Faceted<V>, source: V, direction: V) -> Crossed<V> {
+pub(crate) fn faceted<V: Vector>(planes: &[Planes<V::Scalar>], source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
     let (base, near) = rebased(source, direction, dd.recip());
-    let clipped = clip(hull.planes(), coordinates(near), coordinates(direction));
+    let clipped = clip(planes, coordinates(near), coordinates(direction));
     let Clipped { entry, exit, into, .. } = clipped;
     // A line enters and leaves a bounded set; otherwise some number is NaN.
     if !(entry > -V::Scalar::infinity() && exit < V::Scalar::infinity()) {
         return Err(V::ZERO);
     }
-    Crossing { entry, exit, normal: facet(hull.planes(), into).0 }.shifted(base, unit, || V::ZERO)
+    Crossing { entry, exit, normal: facet(planes, into).0 }.shifted(base, unit, || V::ZERO)
 }
 
 impl<V: Vector> NearLine<V> {
@@ -35,12 +35,11 @@ impl<V: Vector> NearLine<V> {
     /// `12uS`: with the rounding of the support values `30uS`, less than [`at_foot`](Self::at_foot) allows for. A point
     /// of the line loses `4uS`, and its product with a normal `3uS`.
     #[inline(always)]
-    pub(crate) fn faceted(&self, hull: &Faceted<V>) -> Option<CertainCrossing<V>> {
+    pub(crate) fn faceted(&self, planes: &[Planes<V::Scalar>]) -> Option<CertainCrossing<V>> {
         let line = self.at_foot();
         let Self { source, direction, error, .. } = line;
-        let (known, latest) =
-            line.cut(hull.planes(), clip(hull.planes(), coordinates(source), coordinates(direction)))?;
-        let is_in = || most_beyond(hull.planes(), coordinates(source + direction * latest)) <= -error;
+        let (known, latest) = line.cut(planes, clip(planes, coordinates(source), coordinates(direction)))?;
+        let is_in = || most_beyond(planes, coordinates(source + direction * latest)) <= -error;
         (matches!(known, CertainCrossing::Misses(_)) || is_in()).then_some(known)
     }
 

@@ -1,8 +1,8 @@
 //! A ball about the origin.
 
+use crate::ball_support::swept;
 use crate::error::{InvalidShape, non_negative};
 use crate::line_crossing::{NearLine, ball, closely, lanes};
-use crate::support::swept;
 use crate::{
     CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Lines, Rounding, Scalar, SupportMap,
     Vector,

@@ -1,12 +1,12 @@
 //! A solid cone about the y axis.
 
-use super::cylinder::{across, disc_hessian};
+use super::axial::{ConeMeasures, across, disc_hessian};
+use crate::ball_support::swept;
 use crate::closest_point::closest_of_cone;
 use crate::error::{InvalidShape, measurable, non_negative};
 use crate::line_crossing::{NearLine, closely, cone};
 use crate::numerics::bound::roundings;
 use crate::numerics::elementary::hypot;
-use crate::support::swept;
 use crate::{
     CertainCrossing, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap,
     Vector3,
@@ -24,11 +24,7 @@ use crate::{
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone<V: Vector3> {
-    half_height: V::Scalar,
-    radius: V::Scalar,
-    extent: V::Scalar,
-    /// Cosine and sine of half the opening angle.
-    slant: (V::Scalar, V::Scalar),
+    measures: ConeMeasures<V::Scalar>,
 }
 
 impl<V: Vector3> Cone<V> {
@@ -49,31 +45,26 @@ impl<V: Vector3> Cone<V> {
             (V::Scalar::ONE, V::Scalar::ZERO)
         };
         let extent = measurable("half_height", hypot(radius, half_height))?;
-        Ok(Self { half_height, radius, extent, slant })
+        Ok(Self { measures: ConeMeasures { half_height, radius, extent, slant } })
     }
 
     /// Half the height, from the middle to the apex or to the base.
     #[must_use]
     pub fn half_height(&self) -> V::Scalar {
-        self.half_height
-    }
-
-    /// Cosine and sine of half the opening angle.
-    pub(crate) fn slant(&self) -> (V::Scalar, V::Scalar) {
-        self.slant
+        self.measures.half_height
     }
 
     /// The radius of the base disc.
     #[must_use]
     pub fn disc_radius(&self) -> V::Scalar {
-        self.radius
+        self.measures.radius
     }
 
     /// The cone is the hull of its apex (support value `h·d_y`) and its base disc (`r·|d_xz| − h·d_y`): the apex is
     /// farther where `2h·d_y > r·|d_xz|`, here in units of the slant's length, so that no product is out of range.
     #[inline(always)]
     fn is_apex_farthest(&self, direction: V, across: V) -> bool {
-        let (cosine, sine) = self.slant;
+        let (cosine, sine) = self.measures.slant;
         cosine * direction.get(1) > sine * across.norm()
     }
 }
@@ -85,15 +76,15 @@ impl<V: Vector3> SupportMap for Cone<V> {
     fn support(&self, direction: V) -> V {
         let across = across(direction);
         if self.is_apex_farthest(direction, across) {
-            V::axis(1) * self.half_height
+            V::axis(1) * self.measures.half_height
         } else {
-            swept(self.radius, across) - V::axis(1) * self.half_height
+            swept(self.measures.radius, across) - V::axis(1) * self.measures.half_height
         }
     }
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core { error: roundings(15.0, self.radius), ..Core::exact(CoreKind::Curved, self.extent) }
+        Core { error: roundings(15.0, self.measures.radius), ..Core::exact(CoreKind::Curved, self.measures.extent) }
     }
 
     #[inline(always)]
@@ -101,12 +92,12 @@ impl<V: Vector3> SupportMap for Cone<V> {
         if self.is_apex_farthest(direction, across(direction)) {
             return [V::Scalar::ZERO; 3];
         }
-        disc_hessian(self.radius, direction, changes)
+        disc_hessian(self.measures.radius, direction, changes)
     }
 
     #[inline]
     fn core_closest_point(&self, x: V) -> Option<V> {
-        Some(closest_of_cone(self.half_height, self.radius, x))
+        Some(closest_of_cone(self.measures.half_height, self.measures.radius, x))
     }
 
     #[inline(always)]
@@ -115,13 +106,13 @@ impl<V: Vector3> SupportMap for Cone<V> {
             return None;
         }
         if line.is_close {
-            return closely::cone(line, self);
+            return closely::cone(line, &self.measures);
         }
-        NearLine::new(line, V::ZERO, self.extent)?.cone(self)
+        NearLine::new(line, V::ZERO, self.measures.extent)?.cone(&self.measures)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
-        let discs = [(self.half_height, V::Scalar::ZERO), (-self.half_height, self.radius)];
+        let discs = [(self.measures.half_height, V::Scalar::ZERO), (-self.measures.half_height, self.measures.radius)];
         feature.collect_discs(direction, slab, discs);
     }
 
@@ -130,8 +121,8 @@ impl<V: Vector3> SupportMap for Cone<V> {
     /// taken only if their support values, `2h·d_y` and `r·|d_xz|`, agree to that; then it falls short by 6.5 roundings
     /// of `r·|d_xz|` at most.
     fn rounding(&self) -> Rounding<V> {
-        let extent = V::from_fn(|i| if i == 1 { self.half_height } else { self.radius });
-        Rounding::exact(extent).with_error(across(V::splat(roundings(12.5, self.radius))))
+        let extent = V::from_fn(|i| if i == 1 { self.measures.half_height } else { self.measures.radius });
+        Rounding::exact(extent).with_error(across(V::splat(roundings(12.5, self.measures.radius))))
     }
 }
 
@@ -141,6 +132,6 @@ impl<V: Vector3> CrossedByLine for Cone<V> {
         if radius > V::Scalar::ZERO {
             return LineCrossing::Unknown;
         }
-        cone(self, source, direction).into()
+        cone(&self.measures, source, direction).into()
     }
 }

@@ -2,13 +2,13 @@
 
 use num_traits::Float as _;
 
+use super::axial::{across, disc_hessian};
+use crate::ball_support::swept;
 use crate::closest_point::closest_of_ball;
 use crate::error::{InvalidShape, measurable, non_negative};
 use crate::line_crossing::{NearLine, closely, cylinder};
 use crate::numerics::bound::roundings;
 use crate::numerics::elementary::hypot;
-use crate::numerics::range::is_comfortable;
-use crate::support::{swept, swept_hessian};
 use crate::{
     CertainCrossing, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap,
     Vector3,
@@ -54,26 +54,6 @@ impl<V: Vector3> Cylinder<V> {
     pub fn disc_radius(&self) -> V::Scalar {
         self.radius
     }
-}
-
-/// The part of `direction` across the y axis.
-#[inline]
-pub(crate) fn across<V: Vector3>(direction: V) -> V {
-    direction - V::axis(1) * direction.get(1)
-}
-
-/// The Hessian of the support value `r·|a|` of a disc across the y axis, with `a` the part of the direction across the
-/// axis, as seen along two changes. It is `r/|a|·t·tᵀ`, where the unit vector `t` is across the axis and `a`.
-#[inline(always)]
-pub(crate) fn disc_hessian<V: Vector3>(radius: V::Scalar, direction: V, [u, w]: [V; 2]) -> [V::Scalar; 3] {
-    let (x, z) = (direction.get(0), direction.get(2));
-    let squared = x * x + z * z;
-    if !is_comfortable(squared) {
-        return swept_hessian(radius, across(direction), [across(u), across(w)]);
-    }
-    let (tu, tw) = (u.get(0) * z - u.get(2) * x, w.get(0) * z - w.get(2) * x);
-    let bend = radius / (squared * squared.sqrt());
-    [tu * tu * bend, tu * tw * bend, tw * tw * bend]
 }
 
 impl<V: Vector3> SupportMap for Cylinder<V> {

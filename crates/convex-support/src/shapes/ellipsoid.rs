@@ -2,13 +2,13 @@
 
 use num_traits::Float as _;
 
+use crate::ball_support::swept_hessian;
 use crate::closest_point::closest_of_ellipsoid;
 use crate::error::{InvalidShape, finite, finite_matrix, orthonormal};
 use crate::line_crossing::{NearLine, ellipsoid, skew};
 use crate::numerics::bound::{image, raised, roundings, roundings_of};
 use crate::numerics::jacobi;
 use crate::numerics::range::power_of_two_below;
-use crate::support::swept_hessian;
 use crate::{
     CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Matrix, Rotation, Rounding, Scalar,
     SupportMap, Vector,

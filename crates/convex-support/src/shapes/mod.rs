@@ -1,22 +1,21 @@
 //! The primitive shapes. Each is centred on, or given in, its own frame; [`Posed`](crate::Posed) puts it elsewhere.
 
+pub(crate) mod axial;
 mod ball;
 mod capsule;
 mod cone;
 mod cuboid;
 mod cylinder;
 mod ellipsoid;
+pub(crate) mod planar_triangle;
 mod point;
 mod points;
 mod polytope;
 mod segment;
 mod triangle;
 
-pub(crate) use cylinder::across;
 #[cfg(feature = "hull")]
 pub(crate) use polytope::{PLANES, Planes, facet};
-pub(crate) use segment::clamp_to_segment;
-pub(crate) use triangle::PlanarTriangle;
 
 pub use ball::Ball;
 pub use capsule::Capsule;

@@ -3,6 +3,7 @@
 use num_traits::Float as _;
 
 use super::points::{extent, middle, relative, rounding_of_points};
+use crate::closest_point::clamp_to_segment;
 use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::{NearLine, Spine};
 use crate::numerics::bound::{roundings, roundings_of};
@@ -48,24 +49,6 @@ impl<V: Vector> Segment<V> {
         let [a, b] = relative(self.points);
         let half = V::Scalar::from_f64(0.5);
         ((a + b) * half, (b - a) * half)
-    }
-}
-
-/// The point of a segment nearest `x`.
-#[inline]
-pub(crate) fn clamp_to_segment<V: Vector>([a, b]: [V; 2], x: V) -> V {
-    let edge = b - a;
-    let Some(unit) = edge.unit() else { return a };
-    // From the nearer end, so that the point is as accurate as that end is close.
-    let (from_a, from_b) = (unit.dot(x - a), unit.dot(b - x));
-    if from_a <= V::Scalar::ZERO {
-        a
-    } else if from_b <= V::Scalar::ZERO {
-        b
-    } else if from_a <= from_b {
-        a + unit * from_a
-    } else {
-        b - unit * from_b
     }
 }
 

@@ -45,47 +45,6 @@ impl<V: Vector> Triangle<V> {
     }
 }
 
-/// A triangle in its own plane: the longest edge from `(0, 0)` to `(length, 0)`, the third corner above it at
-/// `(along, height)`, so that `0 ≤ along ≤ length`.
-///
-/// Signs of areas in these coordinates tell inside from outside without the cancellation of Gram determinants.
-pub(crate) struct PlanarTriangle<V: Vector> {
-    /// The corners, those of the longest edge first.
-    pub(crate) corners: [V; 3],
-    /// Unit vectors along the longest edge and up to the third corner.
-    pub(crate) axes: [V; 2],
-    pub(crate) length: V::Scalar,
-    pub(crate) along: V::Scalar,
-    pub(crate) height: V::Scalar,
-}
-
-impl<V: Vector> Triangle<V> {
-    /// `None` if the triangle is a segment or a point.
-    pub(crate) fn in_its_plane(&self) -> Option<PlanarTriangle<V>> {
-        let [a, b, c] = self.longest_edge_first();
-        let u = (b - a).unit()?;
-        let along = u.dot(c - a);
-        let up = (c - a) - u * along;
-        // Once more, because `up` may be small against the subtracted part.
-        let up = up - u * u.dot(up);
-        let v = up.unit()?;
-        Some(PlanarTriangle { corners: [a, b, c], axes: [u, v], length: u.dot(b - a), along, height: v.dot(up) })
-    }
-
-    /// The corners in the same cyclic order, the longest edge between the first two.
-    pub(crate) fn longest_edge_first(&self) -> [V; 3] {
-        let [a, b, c] = self.points;
-        let (ab, bc, ca) = ((b - a).norm(), (c - b).norm(), (a - c).norm());
-        if ab >= bc && ab >= ca {
-            [a, b, c]
-        } else if bc >= ca {
-            [b, c, a]
-        } else {
-            [c, a, b]
-        }
-    }
-}
-
 impl<V: Vector> SupportMap for Triangle<V> {
     type Vector = V;
 
@@ -117,18 +76,18 @@ impl<V: Vector> SupportMap for Triangle<V> {
 
     #[inline]
     fn core_closest_point(&self, x: V) -> Option<V> {
-        Some(closest_of_triangle(&Self { points: relative(self.points) }, x))
+        Some(closest_of_triangle(relative(self.points), x))
     }
 
     /// `None` in the plane without a radius, and in twice the precision: a search answers.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
-        let (radius, corners) = (line.radius, Self { points: relative(self.points) });
+        let (radius, corners) = (line.radius, relative(self.points));
         if line.is_close || V::DIM == 2 && radius == V::Scalar::ZERO {
             return None;
         }
         let near = NearLine::new(line, middle(self.points), extent(&self.points).norm() + radius)?;
-        if radius > V::Scalar::ZERO { near.rounded_triangle(&corners, radius) } else { near.triangle(&corners) }
+        if radius > V::Scalar::ZERO { near.rounded_triangle(corners, radius) } else { near.triangle(corners) }
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
@@ -146,6 +105,6 @@ impl<V: Vector> SupportMap for Triangle<V> {
 impl<V: Vector> CrossedByLine for Triangle<V> {
     #[inline]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        triangle(&Self { points: relative(self.points) }, radius, source, direction).into()
+        triangle(relative(self.points), radius, source, direction).into()
     }
 }

@@ -1,4 +1,4 @@
-//! glam's vectors behind one trait.
+//! glam's vectors behind one trait, and what turns them behind two more: the traits name one another.
 
 mod glam;
 mod matrix;
@@ -10,9 +10,10 @@ use num_traits::Float as _;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use crate::numerics::range::{is_comfortable, rarely, scaled};
+use crate::Scalar;
+use crate::error::InvalidShape;
+use crate::numerics::range::{is_comfortable, power_of_two};
 use crate::sealed::Sealed;
-use crate::{AngularVelocity, Rotation, Scalar};
 
 /// A vector of 2D or 3D space: glam's `Vec2`, `Vec3`, `Vec3A`, `DVec2` or `DVec3`.
 ///
@@ -209,4 +210,150 @@ mod tests {
         assert_eq!(Vector::norm(DVec2::new(3.0, 4.0) * 5e-324), 5.0 * 5e-324, "subnormal");
         assert_eq!(Vector::norm(Vec3A::new(3.0, 0.0, 4.0) * 1e-45), 5.0 * 1e-45, "subnormal");
     }
+}
+
+/// A rotation of the space of `V`: an angle in radians in 2D, a quaternion of any length in 3D.
+///
+/// Its meaning is exact: the sine and cosine of the angle, and the quaternion divided by its length. The trait is
+/// sealed; [`Vector::Rotation`] says which type rotates which vectors.
+pub trait Rotation<V: Vector>: Copy + Debug + Default + PartialEq + Send + Sync + 'static + Sealed {
+    /// A bound on the rounding error of each entry of [`matrix`](Self::matrix), in units of the scalar's epsilon.
+    const MATRIX_ERROR: f64;
+
+    /// A bound on how far the matrix moves a unit vector from where the rotation does, in the same units.
+    const OPERATOR_ERROR: f64;
+
+    /// The rotation of the quaternion `x·i + y·j + z·k + w`; in 2D by its angle about `z`, `2·atan2(z, w)`.
+    fn from_xyzw(quaternion: [V::Scalar; 4]) -> Self;
+
+    /// The matrix; of NaNs if there is none.
+    fn matrix(self) -> V::Matrix;
+
+    /// The rotation if it has a matrix.
+    ///
+    /// # Errors
+    /// [`InvalidShape::NonFinite`] naming the number that is not finite, [`InvalidShape::ZeroRotation`] for the zero
+    /// quaternion.
+    fn checked(self, parameter: &'static str) -> Result<Self, InvalidShape>;
+}
+
+/// An angular velocity `ω` in the space of `V`, in radians per unit of time: a number in 2D, counterclockwise; in 3D a
+/// vector along the axis, after the right-hand rule.
+///
+/// The trait is sealed; [`Vector::AngularVelocity`] says which type turns which vectors.
+pub trait AngularVelocity<V: Vector>:
+    Copy + Debug + Default + PartialEq + Send + Sync + 'static + Sealed + data::Data
+{
+    /// A bound on the error of [`turn`](Self::turn) as an operator, relative to the square root of the sum of its
+    /// squared entries and in units of the scalar's epsilon.
+    const TURN_ERROR: f64;
+
+    /// The type of a rotation at this velocity.
+    type Spin: Spin<V>;
+
+    /// The matrix `W` with `W·x = ω × x`.
+    fn cross_matrix(self) -> V::Matrix;
+
+    /// The rotation at this velocity, prepared for many times.
+    fn spin(self) -> Self::Spin;
+
+    /// The matrix `R − 1` with `R` the rotation by `|ω|·time` about `ω`: what the rotation adds to a vector. It is
+    /// small if the angle is small, and its error is relative to its size.
+    ///
+    /// The angle may be many turns, since it is computed in twice the precision. Beyond 2⁵⁰ this is not enough, and the
+    /// matrix consists of NaNs.
+    #[inline]
+    fn turn(self, time: V::Scalar) -> V::Matrix {
+        self.spin().turn(time)
+    }
+
+    /// The constant angular velocity that turns `from` into `to` within one unit of time, the short way round.
+    /// Quaternions need not be unit; the result is of NaNs if one of them is no rotation.
+    fn between(from: V::Rotation, to: V::Rotation) -> Self;
+
+    /// The angular velocity `factor` times as fast.
+    #[must_use]
+    fn scaled(self, factor: V::Scalar) -> Self;
+
+    /// The first coordinate that is not finite, counted from 0.
+    fn non_finite(self) -> Option<usize>;
+
+    /// The moment of a force at the end of an arm: `arm × force`, in 2D its only coordinate. So for any `ω`
+    ///
+    /// > moment(arm, force)·ω = force·(ω × arm).
+    ///
+    /// ```
+    /// use convex_support::{AngularVelocity, glam::{DVec2, DVec3}};
+    ///
+    /// assert_eq!(<f64 as AngularVelocity<DVec2>>::moment(DVec2::X * 3.0, DVec2::Y), 3.0);
+    /// let moment = <DVec3 as AngularVelocity<DVec3>>::moment(DVec3::X * 3.0, DVec3::Y);
+    /// assert_eq!(moment, DVec3::Z * 3.0);
+    /// ```
+    fn moment(arm: V, force: V) -> Self;
+
+    /// Coordinate `index`, counted from 0, of the one in 2D or the three in 3D.
+    ///
+    /// # Panics
+    /// If there is no such coordinate.
+    fn coordinate(self, index: usize) -> V::Scalar;
+
+    /// The angular velocity whose coordinate `i` is `f(i)`.
+    fn from_coordinates(f: impl FnMut(usize) -> V::Scalar) -> Self;
+}
+
+/// A rotation at a constant [angular velocity](AngularVelocity). Everything that does not depend on time is computed
+/// once.
+///
+/// ```
+/// use convex_support::{AngularVelocity, Spin, glam::DVec3};
+///
+/// // A quarter of a turn about z within a second.
+/// let spin = (DVec3::Z * std::f64::consts::FRAC_PI_2).spin();
+/// for (time, to) in [(0.0, DVec3::X), (1.0, DVec3::Y), (2.0, -DVec3::X)] {
+///     assert!((DVec3::X + spin.turn(time) * DVec3::X - to).length() < 1e-15);
+/// }
+/// ```
+pub trait Spin<V: Vector>: Copy + Debug + Send + Sync + 'static + Sealed {
+    /// The displacement of a vector by the rotation after `time`, as by [`AngularVelocity::turn`].
+    fn turn(&self, time: V::Scalar) -> V::Matrix;
+}
+
+mod data {
+    /// The traits of data with serde, so that no type with an angular velocity has to name them.
+    #[cfg(feature = "serde")]
+    pub trait Data: serde::Serialize + serde::de::DeserializeOwned {}
+    #[cfg(feature = "serde")]
+    impl<T: serde::Serialize + serde::de::DeserializeOwned> Data for T {}
+    #[cfg(not(feature = "serde"))]
+    pub trait Data {}
+    #[cfg(not(feature = "serde"))]
+    impl<T> Data for T {}
+}
+
+/// A rare question about a vector, such as one whose square over- or underflows; compiled once for each question.
+///
+/// The coordinates are passed one by one: a vector of `f64` would go through memory. Compilers store it before they
+/// branch, in other pieces than it is read in, so that the usual case would wait for it.
+#[inline]
+pub(crate) fn rarely<V: Vector, R>(v: V, question: impl FnOnce(V) -> R) -> R {
+    #[cold]
+    #[inline(never)]
+    fn asked<V: Vector, R>(x: V::Scalar, y: V::Scalar, z: V::Scalar, question: impl FnOnce(V) -> R) -> R {
+        question(V::from_fn(|i| [x, y, z][i]))
+    }
+    asked(v.get(0), v.get(1), if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO }, question)
+}
+
+/// `v` divided by a power of two near its largest magnitude, and that power as two factors; `None` for zero and NaN.
+pub(crate) fn scaled<V: Vector>(v: V) -> Option<(V, [V::Scalar; 2])> {
+    let largest = v.abs().max_element();
+    // As for the vector across the axis of a cylinder, if the direction is along the axis.
+    if largest <= V::Scalar::ZERO {
+        return None;
+    }
+    // Two factors, because those of subnormal numbers are below the smallest number, and their reciprocals not finite.
+    let (_, exponent, _) = num_traits::Float::integer_decode(largest);
+    let half = power_of_two(i32::from(exponent) / 2);
+    let rest = power_of_two(i32::from(exponent) - i32::from(exponent) / 2);
+    (largest > V::Scalar::ZERO).then(|| (v / half / rest, [half, rest]))
 }

@@ -23,13 +23,12 @@
 mod contact;
 mod margin;
 mod motion;
-mod shape;
+pub(crate) mod shape;
 mod side;
 
 use convex_support::{Ellipsoid, MotionGradient, MotionHessian, Scalar, Vector};
 
 use self::contact::{Contact, Form, Mover, Quantity, Units};
-pub use self::shape::ShapeGradient;
 use crate::numerics::{Vec, combine, load};
 use crate::pair::Pair;
 use crate::{Answer, Distance, Scaling};

@@ -13,11 +13,13 @@
 //! and p₂ = x*. It is closed in two stages: [`multipliers`] finds the direction of the distance by two numbers, however
 //! thin the bodies are, and [`Slab::ascend`] its last digits.
 
+mod bracket;
 mod multipliers;
 mod slab;
 
 use convex_support::{Ellipsoid, Scalar, Vector};
 
+pub use self::bracket::DistanceBracket;
 use self::slab::Slab;
 use crate::margin::solve;
 use crate::numerics::{add, store, unit};
@@ -25,24 +27,6 @@ use crate::pair::Pair;
 use crate::polynomial;
 use crate::secular::Solution;
 use crate::{MarginOptions, Status};
-
-/// Bounds on the Euclidean distance of two ellipsoids, by a slab between them and a point of each.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-#[must_use]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct DistanceBracket<V: Vector> {
-    /// The distance is at least this: the width of the slab between the bodies across `normal`. 0 where they overlap.
-    pub lower: V::Scalar,
-    /// The distance is at most this, that from `point1` to `point2`. 0 where they overlap.
-    pub upper: V::Scalar,
-    /// A point of E₁ (to rounding); where they overlap, a point of both.
-    pub point1: V,
-    /// A point of E₂ (to rounding); where they overlap, a point of both.
-    pub point2: V,
-    /// The unit normal of the slab, from E₁ to E₂; zero where they overlap.
-    pub normal: V,
-}
 
 /// The Euclidean distance of two ellipsoids; see [`distance`].
 #[derive(Clone, Copy, Debug, PartialEq)]

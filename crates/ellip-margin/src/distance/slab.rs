@@ -17,7 +17,7 @@
 use convex_support::numerics::elementary::{hypot, sqrt};
 use convex_support::{Scalar, Vector};
 
-use super::DistanceBracket;
+use super::bracket::DistanceBracket;
 use crate::numerics::{DoubleDouble, Factor, Vec, add, combine, dot, size, store, sub, unit};
 use crate::pair::Pair;
 use crate::secular::Solution;

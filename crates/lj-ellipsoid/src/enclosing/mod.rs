@@ -7,7 +7,7 @@ mod frame;
 mod iterate;
 mod khachiyan;
 mod moments;
-mod moving_points;
+pub(crate) mod moving_points;
 mod newton;
 mod outward;
 mod problem;
@@ -18,7 +18,6 @@ mod violators;
 mod working_set;
 
 use self::active_set::Improve;
-pub use self::moving_points::MovingPoints;
 pub use self::problem::EnclosingIterate;
 use self::problem::{Observer, Problem};
 pub(crate) use self::solution::Solution;

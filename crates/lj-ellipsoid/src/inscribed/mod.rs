@@ -16,7 +16,6 @@ mod polyhedron;
 mod primal_dual;
 mod solution;
 
-pub use self::in_hull::{inscribed_in_hull, inscribed_in_hull_with};
 use self::interior::round_coordinates;
 pub use self::observer::InscribedIterate;
 use self::observer::Observer;

@@ -10,7 +10,8 @@ use glam::DVec3;
 use super::Polytope;
 use super::convex_hull::ConvexHull;
 use super::hull::FromPoints;
-use super::lanes::{WIDTH, coordinate, side_by_side};
+use super::lanes::{coordinate, side_by_side};
+use super::planes::{Planes, facet};
 use crate::error::InvalidShape;
 use crate::line_crossing::{NearLine, faceted, lanes};
 use crate::numerics::bound::roundings;
@@ -18,10 +19,6 @@ use crate::{
     CertainCrossing, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines, Rounding, Scalar, SupportMap,
     Vector, compiled_once,
 };
-
-/// [`WIDTH`] planes, each a unit outward normal by coordinates and the polytope's support value along it from the
-/// middle.
-pub(crate) type Planes<S> = [[S; WIDTH]; 4];
 
 /// The convex hull of points in two forms: by its vertices, as a [`Polytope`], and by the half-spaces of its facets.
 ///
@@ -110,16 +107,6 @@ impl<V: Vector> Faceted<V> {
             (n, reach + n.dot(self.polytope.middle))
         })
     }
-
-    pub(crate) fn planes(&self) -> &[Planes<V::Scalar>] {
-        &self.planes
-    }
-}
-
-/// The normal of a facet, and the polytope's support value along it from the middle.
-pub(crate) fn facet<V: Vector>(planes: &[Planes<V::Scalar>], index: usize) -> (V, V::Scalar) {
-    let (planes, l) = (&planes[index / WIDTH], index % WIDTH);
-    (V::from_fn(|i| planes[i][l]), planes[3][l])
 }
 
 compiled_once! {
@@ -259,7 +246,7 @@ impl<V: Vector> SupportMap for Faceted<V> {
         if line.radius != V::Scalar::ZERO || line.is_close || self.uncut == V::Scalar::infinity() {
             return None;
         }
-        NearLine::new(line.within(error + self.uncut), origin, extent)?.faceted(self)
+        NearLine::new(line.within(error + self.uncut), origin, extent)?.faceted(&self.planes)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
@@ -278,7 +265,7 @@ impl<V: Vector> CrossedByLine for Faceted<V> {
         if radius > V::Scalar::ZERO {
             return LineCrossing::Unknown;
         }
-        faceted(self, source, direction).into()
+        faceted(&self.planes, source, direction).into()
     }
 
     #[inline]

@@ -8,6 +8,8 @@ mod graph;
 #[cfg(feature = "hull")]
 mod hull;
 mod lanes;
+#[cfg(feature = "hull")]
+mod planes;
 
 use core::fmt;
 
@@ -21,15 +23,16 @@ use lanes::Lanes;
 use super::points::{middle, rounding_of_points};
 use crate::error::{InvalidShape, measurable};
 use crate::numerics::bound::roundings_of;
-use crate::numerics::range::{is_comfortable, power_of_two_below, rarely, scaled};
+use crate::numerics::range::{is_comfortable, power_of_two_below};
+use crate::vector::{rarely, scaled};
 use crate::{Core, CoreKind, Feature, Hint, Rounding, Scalar, SupportMap, Vector};
 
 #[cfg(feature = "hull")]
 pub use faceted::Faceted;
 #[cfg(feature = "hull")]
-pub(crate) use faceted::{Planes, facet};
-#[cfg(feature = "hull")]
 pub(crate) use lanes::WIDTH as PLANES;
+#[cfg(feature = "hull")]
+pub(crate) use planes::{Planes, facet};
 
 /// The convex hull of a list of points; a polygon in 2D, a polyhedron in 3D.
 ///
