@@ -11,6 +11,7 @@ pub mod bits;
 pub mod docs;
 mod draw;
 pub mod engine;
+pub mod follow;
 pub mod footprint;
 pub mod fuzz;
 pub mod judge;

@@ -9,7 +9,7 @@ use std::io::{self, Write};
 use std::process::{Command, ExitCode};
 
 use clap::{Args, Parser, Subcommand};
-use xtask::{bits, docs, footprint, fuzz, museum, paths, prove, query, validate};
+use xtask::{bits, docs, follow, footprint, fuzz, museum, paths, prove, query, validate};
 
 /// Answers query files, validates the crates against true answers, and draws what they do.
 #[derive(Debug, Parser)]
@@ -65,6 +65,11 @@ enum Task {
     /// Measure what importing each crate alone costs, and write the table of `docs/choosing-a-method.md`: packages,
     /// build time, code size.
     Footprint(footprint::Choice),
+    /// Compare with a committed table how many files of gjk-raycast one reads to follow a question, and circles of
+    /// imports in all libraries.
+    ///
+    /// Exit status: 0, or 1 if something got longer, or 2 if a file could not be read.
+    Follow(follow::Choice),
     /// Move a robot along its trajectory among obstacles (a study).
     #[command(disable_help_flag = true)]
     Scene(Passed),
@@ -107,6 +112,7 @@ fn main() -> ExitCode {
         Task::Museum(choice) => museum::run(choice),
         Task::Docs => docs::run(),
         Task::Footprint(choice) => footprint::run(&choice),
+        Task::Follow(choice) => follow::run(&choice),
         Task::Judge(_) | Task::Growth(_) => study("peers"),
         Task::Scene(_) | Task::Matrix(_) | Task::Sweep(_) | Task::Book2d(_) | Task::Render(_) => study(""),
     }
