@@ -203,8 +203,9 @@ pub use result::{
     Cast, Distance, Impact, Intersection, Iterate, LinearCast, Miss, MotionCast, MotionIterate, Outcome, RayCast,
     RayExit, RayHit, SignedDistance, Status,
 };
+pub use scene::among::Among;
 pub use scene::{
-    Among, Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, Scene, SceneAnyHit,
+    Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, Scene, SceneAnyHit,
     SceneCast, SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast,
     SceneSignedDistance, Work,
 };

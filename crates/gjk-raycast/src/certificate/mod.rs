@@ -12,6 +12,7 @@ use alloc::vec::Vec;
 use convex_support::glam::DVec3;
 use convex_support::{Core, Hint, Scalar, SupportMap, Vector};
 
+pub use self::points::WeightedSupport;
 use self::points::{Seen, points, wide};
 use crate::{Distance, Intersection, LinearCast, Motion, Outcome, Ray, RayCast};
 
@@ -36,17 +37,6 @@ impl<V: Vector> Certificate<V> {
     fn of_plane(plane: Option<V>) -> Self {
         Self { plane, points: Vec::new() }
     }
-}
-
-/// A point of a core, given by the direction in which it is farthest, and its weight.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct WeightedSupport<V> {
-    /// The point is the farthest of the core along this direction, which may have any length. The direction has few
-    /// decimals, and is not along the normal of a face, so that it identifies one corner in any precision.
-    pub direction: V,
-    /// Its weight, in double precision, as it is computed from the numbers of the shape.
-    pub weight: f64,
 }
 
 /// The certificate of a [`distance`](crate::distance).

@@ -10,9 +10,19 @@ use convex_support::glam::DVec3;
 use convex_support::numerics::elementary::sin_cos;
 use convex_support::{Scalar, Vector};
 
-use super::WeightedSupport;
 use crate::simplex::{MAX_POINTS, nearest_face};
 use crate::unit::power_of_two_near;
+
+/// A point of a core, given by the direction in which it is farthest, and its weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct WeightedSupport<V> {
+    /// The point is the farthest of the core along this direction, which may have any length. The direction has few
+    /// decimals, and is not along the normal of a face, so that it identifies one corner in any precision.
+    pub direction: V,
+    /// Its weight, in double precision, as it is computed from the numbers of the shape.
+    pub weight: f64,
+}
 
 /// The vector in double precision, in space.
 pub(super) fn wide<V: Vector>(v: V) -> DVec3 {

@@ -62,6 +62,10 @@ impl<V: Vector> HalfSpace<V> {
         self.offset
     }
 
+    pub(crate) fn plane(&self) -> Plane<V> {
+        Plane::new(self.normal, self.offset, self.length)
+    }
+
     /// The distance of a shape, `a`, from the half-space, `b`, or minus its depth if it overlaps.
     ///
     /// ```

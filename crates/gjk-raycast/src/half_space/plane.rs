@@ -5,7 +5,6 @@ use convex_support::numerics::twofold::{two_product, two_sum};
 use convex_support::{Core, Hint, Rounding, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use super::HalfSpace;
 use crate::contact::Level;
 use crate::unit::{power_of_two_near, reciprocal_of_power};
 
@@ -25,15 +24,14 @@ pub(super) struct Lowest<V: Vector> {
     pub(super) point: V,
 }
 
-impl<V: Vector> HalfSpace<V> {
-    pub(crate) fn plane(&self) -> Plane<V> {
-        let per_unit = reciprocal_of_power(power_of_two_near(self.length));
-        let (normal, length) = (self.normal * per_unit, self.length * per_unit);
-        Plane { normal, offset: self.offset * per_unit, length, unit: normal / length }
-    }
-}
-
 impl<V: Vector> Plane<V> {
+    /// The plane of the points x with n·x equal to the offset; `length` is that of the normal n.
+    pub(super) fn new(normal: V, offset: V::Scalar, length: V::Scalar) -> Self {
+        let per_unit = reciprocal_of_power(power_of_two_near(length));
+        let (normal, length) = (normal * per_unit, length * per_unit);
+        Self { normal, offset: offset * per_unit, length, unit: normal / length }
+    }
+
     /// The height of the lowest point of a shape swept by a further ball.
     pub(super) fn lowest<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A, swept: V::Scalar) -> Lowest<V> {
         let Core { origin, radius, .. } = shape.core();

@@ -3,8 +3,7 @@
 
 use convex_support::{BoundingSphere, Matrix, Scalar, Vector};
 
-use super::rigid_motion::RigidMotion;
-use super::trajectory::{Displacement, Trajectory, TurningPlane};
+use super::trajectory::{Displacement, RigidMotion, Trajectory, TurningPlane};
 use crate::{JointBounds, axial};
 
 /// The motion of a body at the end of a chain of joints, each of which moves at a constant rate: a link of a robot

@@ -24,5 +24,5 @@ pub(crate) use motion_cast::{check, checked};
 pub use motion_cast::{motion_cast, motion_cast_with};
 pub(crate) use moving_pair::FullMotion;
 pub(crate) use placed::Moved;
-pub use rigid_motion::{Pose, RigidMotion};
-pub use trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};
+pub use rigid_motion::Pose;
+pub use trajectory::{Displacement, MovingBall, RigidMotion, Trajectory, TurningPlane};

@@ -5,8 +5,7 @@ use num_traits::Float as _;
 
 use super::first_contact::Search;
 use super::moving_pair::MovingPair;
-use super::rigid_motion::RigidMotion;
-use super::trajectory::Trajectory;
+use super::trajectory::{RigidMotion, Trajectory};
 use crate::body::{Both, Shapes};
 use crate::linear_cast::as_body;
 use crate::ray::{check_finite, check_limits, check_numbers};

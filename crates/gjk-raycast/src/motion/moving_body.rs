@@ -4,8 +4,8 @@ use convex_support::{AngularVelocity, BoundingSphere, Core, CoreKind, Matrix, Pa
 use num_traits::Float;
 
 use super::placed::Moved;
-use super::rigid_motion::{RigidMotion, SpinOf, turn_error};
-use super::trajectory::{MovingBall, Trajectory, TurningPlane};
+use super::rigid_motion::{SpinOf, turn_error};
+use super::trajectory::{MovingBall, RigidMotion, Trajectory, TurningPlane};
 use crate::double::{LEAST, Vec3, array, cross, dot, vector};
 use crate::shape::Shape;
 use crate::unit::length_bound;

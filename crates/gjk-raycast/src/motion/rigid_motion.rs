@@ -5,38 +5,8 @@ use convex_support::numerics::elementary::tan;
 use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};
+use super::trajectory::{Displacement, MovingBall, RigidMotion, Trajectory, TurningPlane};
 use crate::axial;
-
-/// A motion at a constant velocity and a constant angular velocity about a centre that moves with the body:
-///
-/// > x(t) = c + t·v + R(t)·(x − c),   with R(t) the rotation by |ω|·t about ω,
-///
-/// in world axes, for any number of turns. The default is rest.
-///
-/// ```
-/// use convex_support::glam::DVec3;
-/// use gjk_raycast::{RigidMotion, Trajectory};
-///
-/// // A wheel of radius 1/2 that rolls along x: its lowest point is at rest.
-/// let rolling = RigidMotion {
-///     velocity: DVec3::X,
-///     angular_velocity: DVec3::new(0.0, 0.0, -2.0),
-///     center: DVec3::ZERO,
-/// };
-/// assert_eq!(rolling.velocity(0.0, DVec3::new(0.0, -0.5, 0.0)), DVec3::ZERO);
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct RigidMotion<V: Vector> {
-    /// The velocity `v` of the centre, in units of length per unit of time.
-    pub velocity: V,
-    /// The angular velocity `ω`, in radians per unit of time: a vector in 3D, a number in 2D.
-    pub angular_velocity: V::AngularVelocity,
-    /// The centre `c` of the rotation at time 0, in the world. It may be any point that moves at the velocity above,
-    /// such as the centre of mass.
-    pub center: V,
-}
 
 /// The spin of the angular velocities of a space.
 pub(super) type SpinOf<V> = <<V as Vector>::AngularVelocity as AngularVelocity<V>>::Spin;

@@ -3,8 +3,37 @@
 use convex_support::{BoundingSphere, InvalidShape, Matrix, Posed, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use super::RigidMotion;
 use crate::unit::length_bound;
+
+/// A motion at a constant velocity and a constant angular velocity about a centre that moves with the body:
+///
+/// > x(t) = c + t·v + R(t)·(x − c),   with R(t) the rotation by |ω|·t about ω,
+///
+/// in world axes, for any number of turns. The default is rest.
+///
+/// ```
+/// use convex_support::glam::DVec3;
+/// use gjk_raycast::{RigidMotion, Trajectory};
+///
+/// // A wheel of radius 1/2 that rolls along x: its lowest point is at rest.
+/// let rolling = RigidMotion {
+///     velocity: DVec3::X,
+///     angular_velocity: DVec3::new(0.0, 0.0, -2.0),
+///     center: DVec3::ZERO,
+/// };
+/// assert_eq!(rolling.velocity(0.0, DVec3::new(0.0, -0.5, 0.0)), DVec3::ZERO);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RigidMotion<V: Vector> {
+    /// The velocity `v` of the centre, in units of length per unit of time.
+    pub velocity: V,
+    /// The angular velocity `ω`, in radians per unit of time: a vector in 3D, a number in 2D.
+    pub angular_velocity: V::AngularVelocity,
+    /// The centre `c` of the rotation at time 0, in the world. It may be any point that moves at the velocity above,
+    /// such as the centre of mass.
+    pub center: V,
+}
 
 /// A rigid motion: the pose of a body at any time, and a bound on the acceleration of its points in between.
 ///

@@ -6,12 +6,13 @@ use core::ops::ControlFlow;
 use convex_support::{Aabb, Bound, Scalar, ScalarOf, SupportMap, SweptBox, Vector, outer_box};
 use num_traits::Float;
 
+use super::among::Among;
 use super::body::seen_from;
 use super::bounds::MovingBalls;
 use super::result::{
     BodyHit, SceneAnyHit, SceneCast, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, reuse,
 };
-use super::{Among, Body, Work};
+use super::{Body, Work};
 use crate::motion::{check, checked};
 use crate::{
     Cast, ChainMotion, Impact, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastError, RayCastOptions, RayHit,

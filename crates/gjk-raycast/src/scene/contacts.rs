@@ -6,8 +6,9 @@ use alloc::vec::Vec;
 use convex_support::{Point, Scalar as _, ScalarOf, SupportMap, Vector as _};
 use num_traits::Float as _;
 
+use super::among::Among;
 use super::result::{BodyContact, PairContact, Work, reuse};
-use super::{Among, Body, Scene};
+use super::{Body, Scene};
 use crate::contact::contact_of;
 use crate::{Contact, SignedDistanceOptions, signed_distance};
 

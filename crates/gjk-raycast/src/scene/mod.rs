@@ -1,6 +1,6 @@
 //! Questions about many bodies, of which few need a query.
 
-mod among;
+pub(crate) mod among;
 mod body;
 mod bounds;
 mod cast;
@@ -17,7 +17,6 @@ use convex_support::{Aabb, Bvh, SupportMap, Triangle, Vector, Vector3, outer_box
 
 use crate::HalfSpace;
 
-pub use self::among::Among;
 pub use self::body::Body;
 pub use self::result::{
     BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, SceneAnyHit, SceneCast,

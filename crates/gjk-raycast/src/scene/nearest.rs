@@ -7,8 +7,9 @@ use core::ops::ControlFlow;
 use convex_support::{Aabb, BoxDistance, Scalar, ScalarOf, SupportMap, outer_box};
 use num_traits::Float;
 
+use super::Body;
+use super::among::Among;
 use super::result::{BodyDistance, BodySignedDistance, SceneDistance, SceneSignedDistance, Work, reuse};
-use super::{Among, Body};
 use crate::{DistanceOptions, SignedDistanceOptions};
 
 impl<S: SupportMap> Among<'_, S> {

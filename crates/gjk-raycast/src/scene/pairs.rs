@@ -5,9 +5,10 @@ use core::ops::ControlFlow;
 
 use convex_support::{PairSearch, ScalarOf, SupportMap, Vector};
 
+use super::among::Among;
 use super::bounds::HeightBound;
 use super::result::{PairContact, PairDistance, Work, reuse};
-use super::{Among, Body, Scene};
+use super::{Body, Scene};
 use crate::{DistanceOptions, distance};
 
 impl<S: SupportMap> Among<'_, S> {
