@@ -255,7 +255,7 @@ impl<V: Vector> Feature<V> {
 }
 
 /// Unit vectors that span the space across a direction; in the plane one, and zero.
-fn across<V: Vector>(direction: V) -> [V; 2] {
+pub(crate) fn across<V: Vector>(direction: V) -> [V; 2] {
     let n = direction.unit().unwrap_or(V::ZERO);
     let a = n.abs();
     let least = (1..V::DIM).fold(0, |least, i| if a.get(i) < a.get(least) { i } else { least });

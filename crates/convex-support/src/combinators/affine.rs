@@ -10,6 +10,7 @@ use crate::numerics::bound::roundings;
 use crate::numerics::range::power_of_two_below;
 use crate::numerics::twofold::dot_minus;
 use crate::support::{ScalarOf, sum_of_hessians};
+use crate::support_feature::across;
 use crate::{
     CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Matrix, Parallelotope,
     Rounding, Scalar, SupportMap, Vector,
@@ -203,15 +204,15 @@ impl<S: SupportMap> SupportMap for Affine<S> {
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
-        let direction = self.onto_shape * direction;
-        self.shape.core_support_feature(direction, slab / self.unit, feature);
+        let onto_shape = self.onto_shape * direction;
+        self.shape.core_support_feature(onto_shape, slab / self.unit, feature);
         // A ball that the matrix flattens along the direction is an edge or a face.
         let is_flat = self.swept > Scalar::ZERO
-            && direction.norm() * self.unit * self.swept * ScalarOf::<S>::from_f64(2.0) <= slab;
-        let swept = if is_flat { Vector::ZERO } else { swept(self.swept, direction) };
+            && onto_shape.norm() * self.unit * self.swept * ScalarOf::<S>::from_f64(2.0) <= slab;
+        let swept = if is_flat { Vector::ZERO } else { swept(self.swept, onto_shape) };
         feature.map(|point| self.matrix * (point + swept) + self.lost);
         if is_flat {
-            feature.sweep(flat_image(&self.matrix).map(|half| half * self.swept), slab);
+            feature.sweep(seen_section(&self.matrix, direction).map(|half| half * self.swept), slab);
         }
     }
 
@@ -263,32 +264,21 @@ impl<S: CrossedByLine> CrossedByLine for Affine<S> {
     }
 }
 
-/// Conjugate radii of the ellipse or segment to which a matrix maps the unit ball, if that is flat; the second is
-/// nearly zero for a segment.
+/// Conjugate radii of the section of the image of the unit ball that is seen along a direction; the second is nearly zero
+/// if the image is a segment, or seen from its edge.
 ///
-/// With `e` along the longest column and `f` across it in the plane of the others, the columns are `N` times that
-/// basis, where `N` has two rows `x` and `y`. The image `{Nu : |u| ≤ 1}` is that of the unit disc by the lower triangle
-/// `L` with `LLᵀ = NNᵀ` (Cholesky), whose columns are `(|x|, x·y/|x|)` and `(0, √(y² − (x·y)²/x²))`.
-fn flat_image<M: Matrix>(matrix: &M) -> [M::Vector; 2] {
-    let columns =
-        |v: M::Vector| M::Vector::from_fn(|j| if j < M::Vector::DIM { matrix.col(j).dot(v) } else { Scalar::ZERO });
-    let longest = |of: &dyn Fn(usize) -> M::Vector| {
-        let longer = |i: usize, j: usize| if of(j).norm() > of(i).norm() { j } else { i };
-        of((1..M::Vector::DIM).fold(0, longer))
-    };
-    let Some(e) = longest(&|j| matrix.col(j)).unit() else { return [M::Vector::ZERO; 2] };
-    let across = |j: usize| matrix.col(j) - e * matrix.col(j).dot(e);
-    let x = columns(e);
-    let length = x.norm();
-    // For a segment that is rounding, which may be along it.
-    let f = longest(&across).unit().map(|f| f - e * f.dot(e));
-    let Some(f) = f.filter(|f| f.norm() > Scalar::from_f64(0.5)).and_then(Vector::unit) else {
-        return [e * length, M::Vector::ZERO];
-    };
-    let y = columns(f);
-    let shared = y.dot(x / length);
-    let rest = y - x * (shared / length);
-    [e * length + f * shared, f * rest.norm()]
+/// With unit vectors `e` and `f` across the direction, the outline of the image `{Mu : |u| ≤ 1}` is that of all points
+/// `(Mᵀe·u, Mᵀf·u)`. They are farthest out where `u` is in the plane of `Mᵀe` and `Mᵀf`, and so the images of two unit
+/// vectors across one another in this plane are the radii. Whatever the rounding of that plane, they are points of the
+/// image.
+fn seen_section<M: Matrix>(matrix: &M, direction: M::Vector) -> [M::Vector; 2] {
+    let [x, y] = across(direction).map(|e| matrix.transpose_mul(e));
+    let (longer, other) = if x.norm() < y.norm() { (y, x) } else { (x, y) };
+    let Some(u) = longer.unit() else { return [M::Vector::ZERO; 2] };
+    // What is left of nearly parallel vectors is rounding, which may be along the first.
+    let rest = |v: M::Vector| v - u * v.dot(u);
+    let w = rest(other).unit().map(rest).filter(|w| w.norm() > Scalar::from_f64(0.5)).and_then(Vector::unit);
+    [*matrix * u, w.map_or(M::Vector::ZERO, |w| *matrix * w)]
 }
 
 fn frobenius_norm<M: Matrix>(matrix: &M) -> <M::Vector as Vector>::Scalar {

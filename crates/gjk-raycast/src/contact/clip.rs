@@ -44,9 +44,13 @@ pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>, slack: S, li
         let e = way(from.at, to.at);
         let along = if is_segment { ContactPart::Vertex(from.id) } else { ContactPart::Edge(from.id, to.id) };
         let inside = |at| if is_segment { dot(e, way(from.at, at)) } else { cross(e, way(from.at, at)) };
-        cut(lists, i, slack * dot(e, e).sqrt(), inside, |edge| match edge {
-            Edge::Own(p, q) => [ContactPart::Edge(p, q), along],
-            Edge::Other(before) => [ContactPart::Face, ContactPart::Vertex(shared_corner(before, i, other))],
+        cut(lists, i, slack * dot(e, e).sqrt(), inside, |edge, at| match edge {
+            Edge::Own(p, q) => (at, [ContactPart::Edge(p, q), along]),
+            Edge::Other(before) => {
+                let (corner, is_shared) = corner_between(before, i, corners);
+                // The lines of the edges of a thin corner cross only somewhere near it, by rounding.
+                (if is_shared { corner.at } else { at }, [ContactPart::Face, ContactPart::Vertex(corner.id)])
+            }
         });
     }
 }
@@ -67,13 +71,14 @@ fn corners_of<S: Scalar>(corners: &[Corner<S>]) -> impl Iterator<Item = Clipped<
 }
 
 /// Keeps the part of a polygon or a segment, the first of two lists, in which `inside` is not less than `-slack`. The
-/// cut is along the edge of index `index` of the other outline, and `parts` tells what its crossing with an edge is on.
+/// cut is along the edge of index `index` of the other outline, and `crossing` tells where it crosses an edge, given
+/// where their lines do, and what the crossing is on.
 pub(crate) fn cut<S: Scalar>(
     lists: &mut [&mut ClippedCorners<S>; 2],
     index: usize,
     slack: S,
     inside: impl Fn(Across<S>) -> S,
-    parts: impl Fn(Edge) -> [ContactPart; 2],
+    crossing: impl Fn(Edge, Across<S>) -> (Across<S>, [ContactPart; 2]),
 ) {
     let [polygon, kept] = lists;
     let polygon = polygon.as_slice();
@@ -97,15 +102,17 @@ pub(crate) fn cut<S: Scalar>(
             let share = (d / (d - e)).max(S::ZERO).min(S::ONE);
             let at = sum(from.at, scaled(way(from.at, to.at), share));
             let edge = if is_in(d) { Edge::Other(index) } else { from.edge };
-            kept.push(Clipped { at, parts: parts(from.edge), edge });
+            let (at, parts) = crossing(from.edge, at);
+            kept.push(Clipped { at, parts, edge });
         }
         d = e;
     }
     lists.swap(0, 1);
 }
 
-/// The number of the corner between two edges of an outline.
-fn shared_corner<S: Scalar>(before: usize, after: usize, outline: &Outline<S>) -> u32 {
-    let count = outline.corners.len();
-    outline.corners[if (before + 1) % count == after { after } else { before }].id
+/// The corner between two edges of an outline, and whether there is one: other edges may meet on their way to be cut off.
+fn corner_between<S: Scalar>(before: usize, after: usize, corners: &[Corner<S>]) -> (Corner<S>, bool) {
+    let follows = |i: usize, j: usize| (i + 1) % corners.len() == j;
+    let is_next = follows(before, after);
+    (corners[if is_next { after } else { before }], is_next || follows(after, before))
 }

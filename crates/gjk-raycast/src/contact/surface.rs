@@ -189,8 +189,8 @@ impl<'s, V: Vector> Side<'s, V> {
             if !allowed.is_finite() {
                 break;
             }
-            value = between(&around, at);
-            lost = allowed;
+            let Level { value: height, error: aside } = between(&around, at);
+            (value, lost) = (height, allowed + aside);
             if value + self.noise >= self.reach {
                 break;
             }
@@ -272,26 +272,26 @@ impl<'s, V: Vector> Side<'s, V> {
 type Corners<S> = SmallVec<[Corner<S>; 3]>;
 
 /// The height between the ends of a segment, or between the corners of a triangle, counterclockwise. A place beyond an
-/// edge by rounding has the height of the nearest point of the edges: the plane of a steep triangle soon leaves the
-/// shape there.
-fn between<S: Scalar>(corners: &[Corner<S>], at: Across<S>) -> S {
+/// edge by rounding has the height of the nearest point of the edges, because the plane of a steep triangle soon leaves
+/// the shape there. The error is how far away that point is.
+fn between<S: Scalar>(corners: &[Corner<S>], at: Across<S>) -> Level<S> {
     let to = |i: usize| way(at, corners[i].at);
     let of_edge = |i: usize, j: usize| {
         let e = way(to(i), to(j));
         let share = share_of_second(to(i), e);
         let (x, y) = (to(i).0 + e.0 * share, to(i).1 + e.1 * share);
-        (dot((x, y), (x, y)), corners[i].height + (corners[j].height - corners[i].height) * share)
+        Level { value: corners[i].height + (corners[j].height - corners[i].height) * share, error: spread((x, y)) }
     };
     if corners.len() < 3 {
-        return of_edge(0, 1).1;
+        return of_edge(0, 1);
     }
     let weights = [spanned(to(1), to(2)), spanned(to(2), to(0)), spanned(to(0), to(1))];
     if weights.iter().any(|weight| !(*weight >= S::ZERO)) {
         let edges = [of_edge(0, 1), of_edge(1, 2), of_edge(2, 0)];
-        return edges.iter().fold(edges[0], |best, &next| if next.0 < best.0 { next } else { best }).1;
+        return edges.iter().fold(edges[0], |best, &next| if next.error < best.error { next } else { best });
     }
     let [p, q, r] = [0, 1, 2].map(|i| corners[i].height * weights[i]);
-    (p + q + r) / (weights[0] + weights[1] + weights[2])
+    Level { value: (p + q + r) / (weights[0] + weights[1] + weights[2]), error: S::ZERO }
 }
 
 /// Whether a point is behind another one, beyond a side of the shape steeper than [`STEEP`].
@@ -334,7 +334,7 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
         if is_known && left >= -allowed && right <= as_well && (ahead || too) {
             let corners = SmallVec::from_buf([p, q, next]);
             // At a corner there are two planes, and the one without that corner is higher.
-            if best.as_ref().is_none_or(|known| between(&corners, at) > between(known, at)) {
+            if best.as_ref().is_none_or(|known| between(&corners, at).value > between(known, at).value) {
                 best = Some(corners);
             }
         }
@@ -359,7 +359,7 @@ mod tests {
         for i in 1..100 {
             let s = f64::from(i) / 100.0;
             let at = (p.0 + (0.5 * (q.0 + r.0) - p.0) * s, p.1 + (0.5 * (q.1 + r.1) - p.1) * s);
-            let off = (between(&[corner(p), corner(q), corner(r)], at) - plane(at)).abs();
+            let off = (between(&[corner(p), corner(q), corner(r)], at).value - plane(at)).abs();
             assert!(off <= 8.0 * f64::EPSILON, "{off:e} at {at:?}");
         }
     }

@@ -38,7 +38,7 @@ pub(super) fn least_over_overlap<S: Scalar>(
         let Some((rim, q)) = outside else { return Some(least) };
         let radius = mean_radius(&rim);
         let inside = |at| (S::ONE - dot(of_circle(&rim, at), q)) * radius;
-        cut(&mut lists, 0, slack, inside, |_| [ContactPart::Face; 2]);
+        cut(&mut lists, 0, slack, inside, |_, at| (at, [ContactPart::Face; 2]));
     }
     least_corner(lists[0]).map(|(_, least)| least)
 }
