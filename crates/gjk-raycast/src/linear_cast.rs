@@ -1,12 +1,13 @@
 //! The first contact of two shapes that move without turning.
 
+use convex_support::numerics::bound::{raised, roundings};
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Core, CoreKind, Posed, Scalar, SupportMap, Vector, compiled_once};
+use convex_support::{Core, CoreKind, Hint, Posed, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
 use crate::cast::{
-    CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, cast, certain_closely, settle_start, sliding,
+    CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, cast, certain_closely, settle_start,
 };
 use crate::distance::distance_of_any;
 use crate::extra::in_static;
@@ -14,14 +15,15 @@ use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::signed_distance::signed_distance_of_any;
 use crate::{
-    DistanceOptions, Impact, Iterate, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCastError,
+    DistanceOptions, HalfSpace, Impact, Iterate, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCastError,
     RayCastOptions, SignedDistance, SignedDistanceOptions, StartInContact, Status, WarmStart,
 };
 
-/// Shapes may be in contact if they are apart by so many ε of their sizes and of their distance from the origin: they
-/// and their places are rounded.
+/// Shapes may be in contact if they are apart by so many ε of their sizes and of their distance from the origin, and so
+/// many times the errors that they state of their support points: they and their places are rounded.
 const NEAR: f64 = 16.0;
 const NEAR_OF_FAR: f64 = 4.0;
+const NEAR_OF_STATED: f64 = 4.0;
 
 /// The first contact of two shapes that move at constant velocities, without turning.
 ///
@@ -212,7 +214,8 @@ fn answer<V: Vector>(
         let far = core_a.origin.norm() + core_b.origin.norm();
         // By powers of two that are less than 1, so that nothing overflows.
         let units = |number: f64| V::Scalar::EPSILON * Scalar::from_f64(number);
-        let slack = sizes * units(NEAR) + far * units(NEAR_OF_FAR);
+        let stated = (core_a.error + core_b.error) * Scalar::from_f64(NEAR_OF_STATED);
+        let slack = sizes * units(NEAR) + far * units(NEAR_OF_FAR) + stated;
         only_if_deeper(&mut answer, &start, motion, options, slack);
     }
     answer.status = answer.status.of(&answer.outcome, answer.is_certain());
@@ -300,28 +303,30 @@ fn only_if_deeper<V: Vector>(
         Some(contact) => contact.filter(|contact| slack < infinity && contact.start.upper < infinity),
         None => None,
     };
-    let Some(contact) = contact else {
-        // Of numbers out of range nothing is known, nor without a look at the start.
-        (answer.outcome, answer.status) = (Outcome::Undecided, Status::Stalled);
-        (answer.lower, answer.upper) = (zero, infinity);
-        return;
-    };
-    answer.iterations += contact.start.iterations;
-    let is_hit_at_start = matches!(answer.outcome, Outcome::Hit(Impact { time, .. }) if time == zero);
-    if let Some(axis) = contact.leaves_along {
-        (answer.outcome, answer.status) = (Outcome::Miss(Miss { axis }), Status::Converged);
-        (answer.lower, answer.upper) = (infinity, infinity);
-    } else if is_hit_at_start {
-        let (point, normal) = (contact.start.point_b, Some(contact.start.normal));
-        answer.outcome = Outcome::Hit(Impact { time: zero, point, normal });
+    answer.iterations += contact.as_ref().map_or(0, |contact| contact.iterations);
+    match contact.and_then(|InContact { start, later, .. }| Some((start, later?))) {
+        Some((_, Later::Never(axis))) => {
+            (answer.outcome, answer.status) = (Outcome::Miss(Miss { axis }), Status::Converged);
+            (answer.lower, answer.upper) = (infinity, infinity);
+        }
+        Some((SignedDistance { point_b: point, normal, .. }, Later::Deeper(upper))) => {
+            if !matches!(answer.outcome, Outcome::Hit(Impact { time, .. }) if time > zero) {
+                answer.outcome = Outcome::Hit(Impact { time: zero, point, normal: Some(normal) });
+                (answer.lower, answer.status) = (zero, Status::Converged);
+            }
+            answer.upper = answer.upper.min(upper.max(answer.lower));
+        }
+        None => {
+            // Neither is proved. Of numbers out of range nothing is known, nor without a look at the start.
+            let is_given_up = answer.iterations >= options.max_iterations;
+            answer.status = if is_given_up { Status::IterationLimit } else { Status::Stalled };
+            (answer.outcome, answer.lower, answer.upper) = (Outcome::Undecided, zero, infinity);
+        }
     }
 }
 
-/// How far on shapes are tested first, in units of their uncertainty; how much farther each time; and how often at
-/// most, which is beyond their sizes in any precision.
-const FIRST: f64 = 64.0;
-const FARTHER: f64 = 8.0;
-const LOOKS: usize = 18;
+/// The number of places along a motion that are looked at, at most.
+const LOOKS: usize = 24;
 
 /// Two shapes at the start of a cast. They are behind pointers, so that rare queries are compiled once.
 struct StartingPair<'s, V: Vector> {
@@ -365,12 +370,11 @@ impl<V: Vector> StartingPair<'_, V> {
     /// The contact of shapes that touch or overlap at the start, to a slack that is the rounding of their places;
     /// `None` if they are certainly apart by more.
     ///
-    /// The depth of a point in a convex set is a concave function of the point: it is the least of the distances from
-    /// the supporting planes. So if it falls at first along a line, it falls along all of it; and if it is more
-    /// anywhere along the line than at the start, it grows from the start on. Where the depth is `−s`, along the normal
-    /// `n`, it changes by `−n·w` with the relative velocity `w` of `a`; if several ways out are equally short, or the
-    /// shapes touch at corners, by the least of these. Then `n` is one of many normals, and the shapes may part along
-    /// another one although they close in along `n`. So it counts whether they are certainly deeper later.
+    /// The signed distance `s` of bodies that move straight is a convex function of time: it is the greatest of the
+    /// lines `g − c·t` of all planes, each of which keeps the shapes apart by `g` at the start, and is closed in on at
+    /// a speed `c`. So shapes get deeper at once or never. They never do if one of the planes that are nearest to
+    /// contact at the start is not closed in on, which need not be the one that the search has come to, if several ways
+    /// out are equally short, or the shapes touch at corners.
     #[cold]
     #[inline(never)]
     fn of_motion(&self, motion: Motion<V>, options: &LinearCastOptions<V>, slack: V::Scalar) -> Option<InContact<V>> {
@@ -378,59 +382,125 @@ impl<V: Vector> StartingPair<'_, V> {
         if !(start.lower <= self.target + slack) {
             return None;
         }
-        let velocity = motion.velocity_a - motion.velocity_b;
-        let (speed, closing) = (velocity.norm(), -start.normal.dot(velocity));
-        if !(closing > sliding(speed)) {
-            return Some(InContact { start, leaves_along: Some(start.normal) });
-        }
-        // If the depth is known to rounding, a motion that never shows a change slides.
-        let slides = start.upper >= self.target - slack || start.upper - start.lower <= slack;
-        let leaves_along = match self.later(velocity, speed / closing, &start, slack) {
-            Later::Deeper => None,
-            Later::Less(normal) => Some(normal),
-            Later::Unknown(normal) => slides.then_some(normal),
-        };
-        Some(InContact { start, leaves_along })
+        let mut iterations = start.iterations;
+        let mut search = |motion| self.later(motion, options, slack, &start, &mut iterations);
+        // What got deeper on the way to the start, backwards, never does after it.
+        let later = search(motion).or_else(|| match search(Motion { velocity_a: -motion.velocity_a, velocity_b: -motion.velocity_b }) {
+            Some(Later::Deeper(_)) => Some(Later::Never(start.normal)),
+            _ => None,
+        });
+        Some(InContact { start, later, iterations })
     }
 
-    /// Whether the shapes get deeper than they start as they move along a velocity, so many times as far as they come
-    /// nearer along the normal. They are tested so far on that it shows, if the normal is the only one, to as far as
-    /// their sizes.
-    fn later(&self, velocity: V, per_depth: V::Scalar, start: &SignedDistance<V>, slack: V::Scalar) -> Later<V> {
-        let SignedDistance { upper, lower, normal, .. } = *start;
-        let size = self.a.core().size() + self.b.core().size() + self.target;
-        let unit = velocity.unit().unwrap_or(V::ZERO);
-        let mut step = (slack + (upper - lower)) * per_depth * V::Scalar::from_f64(FIRST);
-        let mut last = normal;
-        for _ in 0..LOOKS {
-            if !(step < size) {
-                break;
+    /// Whether the shapes get deeper by more than a slack than they start as they move; `None` if that is not known.
+    ///
+    /// Two lines, of a plane that is closed in on and of one that is not, bound `s` from below by the height at which
+    /// they cross. If that is not far enough below the start, the shapes never get deeper. Otherwise they are looked at
+    /// when the lines cross: either they are deeper then, or the plane that is nearest to contact there has a line that
+    /// takes the place of one of both. This ends soon if `s` has kinks. If it is smooth, it bends between the two
+    /// places that the lines are of, and each second look is where its slope is zero if that changes evenly.
+    fn later(
+        &self,
+        motion: Motion<V>,
+        options: &LinearCastOptions<V>,
+        slack: V::Scalar,
+        start: &SignedDistance<V>,
+        iterations: &mut usize,
+    ) -> Option<Later<V>> {
+        let zero = V::Scalar::ZERO;
+        let velocity = motion.velocity_a - motion.velocity_b;
+        let Some(along) = velocity.unit() else { return (velocity == V::ZERO).then_some(Later::Never(start.normal)) };
+        let lost = lost_in_sum(motion.velocity_a, -motion.velocity_b).norm();
+        let [never, deeper] = [start.upper, start.lower].map(|s| s.min(self.target) - slack);
+        let mut before = self.line(start.normal, motion, zero)?;
+        let mut after = if before.closing > zero { self.line(along, motion, V::Scalar::infinity())? } else { before };
+        for look in 0..LOOKS {
+            // It is zero if the quotient is NaN, since there is only one line.
+            let crossing = ((before.gap - after.gap) / (before.closing - after.closing)).max(zero);
+            // Before any time the first line is higher than then, and after it the second one, which is all that there
+            // is after the start.
+            let least = if crossing > zero { before.at(crossing).min(after.at(crossing)) } else { after.gap };
+            if least >= never {
+                return Some(Later::Never(if after.gap >= never { after.normal } else { before.normal }));
             }
-            let Ok(moved) = Posed::translated(self.a, unit * step) else { break };
-            let there = signed_distance_of_any(&WithoutLines(&moved), self.b, SignedDistanceOptions::new());
-            if there.upper < lower.min(self.target - slack) {
-                return Later::Deeper;
+            if crossing == zero {
+                return None;
             }
-            if there.lower > upper {
-                return Later::Less(there.normal);
+            let slope_is_zero = before.closing / (before.closing - after.closing);
+            let time = if look % 2 == 1 && after.time < V::Scalar::infinity() {
+                before.time + (after.time - before.time) * slope_is_zero
+            } else {
+                crossing
+            };
+            let step = velocity * time;
+            let moved = Posed::translated(self.a, step).ok()?;
+            let moved = StartingPair { a: &WithoutLines(&moved), b: self.b, target: self.target };
+            // The place is rounded, and so is the velocity.
+            let off = roundings(2.0, step.norm()) + raised(lost * time);
+            let there = moved.signed_distance(options, (off - deeper).max(zero));
+            *iterations += there.iterations + 1;
+            let upper = there.upper + off;
+            if upper < deeper {
+                // They are deeper from the start on. If they may begin apart, by the slack, they touch no later than
+                // where the chord of the convex function does.
+                let touching = (start.upper - self.target).max(zero) / (start.upper - upper) * time;
+                return Some(Later::Deeper(touching + roundings(8.0, touching)));
             }
-            last = there.normal;
-            step *= V::Scalar::from_f64(FARTHER);
+            // The least is between the bounds that would prove either, however exactly it is known.
+            if least >= deeper && upper < never {
+                return None;
+            }
+            let line = self.line(there.normal, motion, time)?;
+            *(if line.closing > zero { &mut before } else { &mut after }) = line;
         }
-        Later::Unknown(last)
+        None
+    }
+
+    /// The line of the plane across a direction that keeps the shapes farthest apart, found when they have moved for
+    /// some time.
+    fn line(&self, direction: V, motion: Motion<V>, time: V::Scalar) -> Option<Line<V>> {
+        let plane = HalfSpace::new(direction, V::Scalar::ZERO).ok()?.plane();
+        let [core_a, core_b] = [self.a.core(), self.b.core()];
+        let point_a = self.a.core_support(-direction, &mut Hint::new());
+        let point_b = self.b.core_support(direction, &mut Hint::new());
+        let error = plane.error_along(&self.a.rounding()) + plane.error_along(&self.b.rounding());
+        let terms = [core_a.origin, point_a, -core_b.origin, -point_b];
+        let gap = plane.height(terms, error, core_a.radius + core_b.radius).least();
+        let closing = plane.sinking([motion.velocity_a, -motion.velocity_b]).most();
+        Some(Line { gap, closing, normal: plane.unit, time })
     }
 }
 
-/// Whether shapes in contact are deeper later than at the start; if not, with the normal.
-enum Later<V> {
-    Deeper,
-    Less(V),
-    Unknown(V),
+/// A lower bound of the signed distance of two shapes, by a plane between them: no more than the `gap` at the start,
+/// and `closing` less in each unit of time.
+#[derive(Clone, Copy)]
+struct Line<V: Vector> {
+    gap: V::Scalar,
+    closing: V::Scalar,
+    normal: V,
+    /// The time at which the plane is nearest to contact.
+    time: V::Scalar,
+}
+
+impl<V: Vector> Line<V> {
+    /// The bound at a time.
+    fn at(&self, time: V::Scalar) -> V::Scalar {
+        let way = self.closing * time;
+        self.gap - way - roundings(4.0, self.gap.abs() + way.abs())
+    }
+}
+
+/// What is proved of shapes in contact.
+enum Later<V: Vector> {
+    /// They get deeper from the start on, or if they are apart by the slack, from this time on at the latest.
+    Deeper(V::Scalar),
+    /// They never get deeper, but leave, or slide, along this direction from `b` to `a`.
+    Never(V),
 }
 
 /// Two shapes in contact.
 struct InContact<V: Vector> {
     start: SignedDistance<V>,
-    /// If the motion does not go deeper: the direction from `b` to `a` along which it leaves, or slides.
-    leaves_along: Option<V>,
+    later: Option<Later<V>>,
+    iterations: usize,
 }

@@ -27,7 +27,7 @@ pub(crate) use line::{CastRay, LocalRay, Part};
 use outline::bound_entry;
 use portal::portal;
 use start::SettleFn;
-pub(crate) use start::{RayBodies, settle_start, sliding};
+pub(crate) use start::{RayBodies, settle_start};
 
 /// The searches that are quicker than Algorithm 3 alone, and the second measurement where they leave a doubt.
 #[allow(clippy::type_complexity, reason = "the type is written once")]

@@ -124,7 +124,7 @@ fn from_contact<V: Vector>(near: &NearContact<V>) -> FromContact<V> {
 }
 
 /// Closing speeds up to this may be rounding: a normal is known to a few ε.
-pub(crate) fn sliding<S: Scalar>(speed: S) -> S {
+fn sliding<S: Scalar>(speed: S) -> S {
     speed * S::EPSILON * S::from_f64(16.0)
 }
 
