@@ -98,6 +98,12 @@ pub struct SignedDistance<V: Vector> {
     /// certain where `lower` and `upper` have the same sign.
     pub overlap: bool,
     /// How the search ended. The bounds hold in every case.
+    ///
+    /// [`Converged`](Status::Converged) promises that `upper − lower` is at most `6e`, with `e` = 8ε`s` plus the
+    /// [errors](convex_support::Core::error) of both cores, and `s` the sum of both sizes and the offset. Where curved
+    /// shapes may overlap, so that `lower` is not positive, it is at most `6e` plus the
+    /// [tolerance](crate::SignedDistanceOptions::tolerance) times `s`. Or the signed distance is certainly beyond a
+    /// limit of the options.
     pub status: Status,
     /// The number of support points computed of each shape.
     pub iterations: usize,

@@ -89,7 +89,7 @@ compiled_once! {
         let wanted = Wanted::new(OfOverlap::Depth, SignedDistanceOptions { axis, ..options }, Closer::named());
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, true>(&mut cores, &wanted, observer));
-        let mut answer = found.signed_distance(&cores);
+        let mut answer = found.signed_distance(&cores, &wanted);
         // In place: a copy would wait until the answer is in the cache.
         if is_swapped {
             answer = answer.reversed();
@@ -110,7 +110,7 @@ pub(crate) fn rough_signed_distance<V: Vector>(
     direct(shapes, parts, options.max_iterations, &mut Observer::none()).unwrap_or_else(|| {
         let mut cores = Cores::new(shapes, parts.each_ref());
         let wanted = Wanted::new(OfOverlap::RoughDepth, options, extra);
-        separation::<_, true>(&mut cores, &wanted, &mut Observer::none()).signed_distance(&cores)
+        separation::<_, true>(&mut cores, &wanted, &mut Observer::none()).signed_distance(&cores, &wanted)
     })
 }
 

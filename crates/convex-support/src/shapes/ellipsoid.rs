@@ -74,6 +74,7 @@ impl<V: Vector> Ellipsoid<V> {
         let semi_axes = finite("semi_axes", semi_axes)?;
         let axes = orthonormal("axes", axes)?;
         let unit = power_of_two_below(semi_axes.max_element());
+        let skew = skew(&axes);
         match (0..V::DIM).find(|&i| semi_axes.get(i) <= V::Scalar::ZERO) {
             Some(index) => {
                 Err(InvalidShape::NotPositive { parameter: "semi_axes", index, value: semi_axes.get(index).as_f64() })
@@ -85,8 +86,8 @@ impl<V: Vector> Ellipsoid<V> {
                 inverse_semi_axes: V::ONE / semi_axes,
                 axes_error: V::Scalar::ZERO,
                 error: roundings(SUPPORT_POINT_ERROR, semi_axes.max_element()),
-                skew: skew(&axes) * semi_axes.max_element(),
-                rolling_radius: rolling_radius(semi_axes),
+                skew: skew * semi_axes.max_element(),
+                rolling_radius: rolling_radius(semi_axes, skew),
                 scaled_semi_axes: semi_axes / unit,
                 unit,
             }),
@@ -176,14 +177,15 @@ impl<V: Vector> Ellipsoid<V> {
 
 /// The radius of a ball that rolls around within an ellipsoid.
 ///
-/// The least radius of curvature is `c²/a`, of the least and the largest semi-axis. Axes that are orthonormal to half
-/// of their digits may change it by a part, which is less than an eighth unless the ellipsoid is thin; and then there
-/// is not much to gain.
-fn rolling_radius<V: Vector>(semi_axes: V) -> V::Scalar {
+/// The least radius of curvature is `c²/a`, of the least and the largest semi-axis. Axes `R` multiply each of these by
+/// no more and no less than their singular values, which differ from one by no more than the `skew` `|RᵀR − 1|`. If the
+/// ellipsoid is thin, there is not much to gain.
+fn rolling_radius<V: Vector>(semi_axes: V, skew: V::Scalar) -> V::Scalar {
     let (least, largest) = (semi_axes.min_element(), semi_axes.max_element());
     let ratio = least / largest;
     let is_thin = ratio < V::Scalar::from_f64(1.0 / 16.0);
-    if is_thin { V::Scalar::ZERO } else { ratio * least * V::Scalar::from_f64(0.875) }
+    let less = V::Scalar::ONE - skew * V::Scalar::from_f64(4.0);
+    if is_thin { V::Scalar::ZERO } else { ratio * least * less }
 }
 
 /// The error of a support point `R·(a∘u)`, in roundings of the largest semi-axis: 8 for the unit vector and the

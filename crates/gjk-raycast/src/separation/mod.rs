@@ -215,13 +215,16 @@ fn reach_closely<V: Vector>(
         let expanded = if is_apart { None } else { expand(cores, state, options, observer) };
         // If the cores are apart after all, GJK's points are nearer than those of a facet.
         let leads_out = |expanded: &&Expanded<V>| end == End::Overlap || !(expanded.way.h < Scalar::ZERO);
-        // A look near contact that has left more than its errors between the bounds still knows the gap better than
-        // GJK.
-        let near = cores.near.as_ref().filter(|near| is_apart && near.gap.is_finite());
-        let known = match (expanded.as_ref().filter(leads_out), near) {
-            (Some(expanded), _) => Separation::of_expansion(expanded),
-            (None, Some(near)) => Separation::of_near_contact(cores, near),
-            (None, None) => Separation::of_gjk(cores, state, end),
+        let known = match expanded.as_ref().filter(leads_out) {
+            Some(expanded) => Separation::of_expansion(expanded),
+            None => {
+                let by_gjk = Separation::of_gjk(cores, state, end);
+                // A look near contact that has left more than its errors between the bounds may still know the gap
+                // better. If bodies that overlap are apart without their rolling balls, it only knows that they meet.
+                let near = cores.near.as_ref().filter(|near| is_apart && near.gap.is_finite());
+                let by_look = near.map(|near| Separation::of_near_contact(cores, near));
+                by_look.filter(|by_look| !(by_gjk.width() <= by_look.width())).unwrap_or(by_gjk)
+            }
         };
         match expanded {
             Some(Expanded { way, .. }) => known.up_to(cores, state, way),
@@ -296,9 +299,20 @@ impl<V: Vector> Separation<V> {
     fn up_to(self, cores: &Cores<'_, V>, state: &mut Gjk<V>, way: WayOut<V>) -> Self {
         let by_way = way.h + cores.error_along(way.u());
         // NaN is no bound.
-        let plane = cores.best_plane(state).filter(|(outer, _)| *outer <= by_way);
+        let plane = cores.best_plane(state).filter(|&(outer, n)| outer <= by_way && self.lies_across(n, cores));
         let (outer, axis) = plane.unwrap_or((by_way, -way.u()));
         Self { outer, axis, ..self }
+    }
+
+    /// Whether the points of the bodies are apart across a plane to rounding, by its axis into the difference. Of ways
+    /// out that are equally short, another plane may end another one.
+    fn lies_across(&self, axis: V, cores: &Cores<'_, V>) -> bool {
+        (self.u + axis).norm() * self.value(cores).abs() <= cores.noise() * cores.scale()
+    }
+
+    /// How far apart the bounds are.
+    fn width(&self) -> V::Scalar {
+        self.outer - self.inner
     }
 
     /// The same with GJK's points, if cores overlap and those are nearer to one another than the ends of the way out.
@@ -313,9 +327,10 @@ impl<V: Vector> Separation<V> {
         -(self.depth * cores.scale()) - cores.radius()
     }
 
-    /// Bounds on it, and whether they are as near to one another as a measurement near contact leaves them.
+    /// Bounds on it with the axis that proves the lower one, and whether they are as near to one another as a
+    /// measurement near contact leaves them.
     #[inline(always)]
-    fn bounds(&self, cores: &Cores<'_, V>) -> (V::Scalar, V::Scalar, bool) {
+    fn bounds(&self, cores: &Cores<'_, V>) -> (V::Scalar, V::Scalar, V, bool) {
         let (scale, radius) = (cores.scale(), cores.radius());
         let world = |depth: V::Scalar| -(depth * scale) - radius;
         let (lower, upper) = (world(self.outer), world(self.inner));
@@ -326,11 +341,13 @@ impl<V: Vector> Separation<V> {
         // A measurement near contact needs no slack.
         match &cores.near {
             Some(near) => {
-                let lower = lower.max(near.lower * scale - lost(near.lower));
+                let by_look = near.lower * scale - lost(near.lower);
+                let is_better = by_look > lower && self.lies_across(near.normal, cores);
+                let (lower, axis) = if is_better { (by_look, near.normal) } else { (lower, self.axis) };
                 let upper = upper.min(near.upper * scale + lost(near.upper));
-                (lower, upper, upper - lower <= near.frame.error * (scale + scale))
+                (lower, upper, axis, upper - lower <= near.frame.error * (scale + scale))
             }
-            None => (lower, upper, false),
+            None => (lower, upper, self.axis, false),
         }
     }
 
@@ -352,20 +369,27 @@ impl<V: Vector> Separation<V> {
     }
 
     #[inline]
-    pub(crate) fn signed_distance(&self, cores: &Cores<'_, V>) -> SignedDistance<V> {
-        let (lower, upper, is_narrow) = self.bounds(cores);
+    pub(crate) fn signed_distance(&self, cores: &Cores<'_, V>, wanted: &Wanted<V>) -> SignedDistance<V> {
+        let (lower, upper, normal, _) = self.bounds(cores);
         // Numbers that are not finite, or contradict one another, come from an invalid support map, and bound nothing.
         let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
         let infinity = V::Scalar::infinity();
         let (lower, upper) = if is_bounded { (lower, upper) } else { (-infinity, infinity) };
-        let status = self.status(is_bounded, is_narrow);
+        let SignedDistanceOptions { tolerance, limit, depth_limit, .. } = wanted.options;
+        let is_beyond = is_bounded && (lower > limit || -upper > depth_limit);
+        // However the search ended, the width tells.
+        let status = match self.status {
+            _ if is_beyond || upper - lower <= cores.enough(tolerance, lower) => Status::Converged,
+            Status::Converged => Status::Stalled,
+            status => status,
+        };
         let signed_distance = self.value(cores).max(lower).min(upper);
         let [point_a, point_b] = self.ends(cores);
         SignedDistance {
             signed_distance,
             lower,
             upper,
-            normal: self.axis,
+            normal,
             point_a,
             point_b,
             overlap: signed_distance <= V::Scalar::ZERO,
@@ -379,7 +403,7 @@ impl<V: Vector> Separation<V> {
     #[inline]
     pub(crate) fn distance(&self, cores: &Cores<'_, V>) -> Distance<V> {
         let zero = V::Scalar::ZERO;
-        let (lower, upper, is_narrow) = self.bounds(cores);
+        let (lower, upper, axis, is_narrow) = self.bounds(cores);
         // The support points of an invalid shape may contradict one another, or be no numbers: nothing is known.
         let is_bounded = lower <= upper && upper.is_finite();
         let (lower, upper) = match is_bounded {
@@ -392,7 +416,7 @@ impl<V: Vector> Separation<V> {
         let is_met = self.overlap.unwrap_or(value <= zero || status == Status::Converged);
         let overlap = is_met && !(lower > zero);
         let is_deep = overlap && !(value >= -upper);
-        let n = if lower > zero { self.axis } else { -self.u };
+        let n = if lower > zero { axis } else { -self.u };
         let [point_a, point_b] = if overlap { self.common_points(cores) } else { self.ends(cores) };
         Distance {
             distance: value.max(lower).min(upper),

@@ -34,7 +34,7 @@ pub(super) struct Ends<V: Vector> {
 /// plane through the point nearest to the end, across the unit vector `n` from there to it, supports the difference,
 /// and is nearer to zero by more than that: `h(n) = n·(h·u − δ·n) ≤ h − δ`. So it is the next way. For an edge or a
 /// face the plane is more accurate than the short vector from it, by the part of `u` across it. If no lower way is
-/// found, as with no support points left, the way ends at the nearest point, whose distance from zero is between the
+/// found, as with no support points left, the way ends at the nearest point, whose depth along it is between the
 /// bounds. `None` if that point is on no side of zero that the way leads to.
 pub(super) fn ends<V: Vector>(
     cores: &mut Cores<'_, V>,
@@ -70,16 +70,11 @@ pub(super) fn ends<V: Vector>(
             *way = next;
             continue;
         }
+        // Not along the vector to the nearest point: the radii would magnify by how much that leans.
         let reached = end + point;
-        let length = reached.norm();
-        let n = reached / length;
-        return if length <= noise {
-            Some(ends(points, u, u.dot(reached), Vector::ZERO))
-        } else if n.dot(u) > Scalar::ZERO && length <= way.h {
-            Some(ends(points, n, length, Vector::ZERO))
-        } else {
-            None
-        };
+        let (length, depth) = (reached.norm(), u.dot(reached));
+        let is_before = depth > Scalar::ZERO && length <= way.h;
+        return (length <= noise || is_before).then(|| ends(points, u, depth, Vector::ZERO));
     }
 }
 
