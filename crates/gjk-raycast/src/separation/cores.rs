@@ -276,6 +276,13 @@ impl<'a, V: Vector> Cores<'a, V> {
         p.norm() + self.uncertainty.as_ref().map_or(self.error, |known| known.beyond(p)) + self.peeled_error
     }
 
+    /// How wide the bracket on a distance may be at most that rounding alone has left, in the world's unit: the bounds
+    /// that end a search differ by the noise, and each is wrong by no more than the error.
+    #[inline(always)]
+    pub(super) fn widest(&self) -> V::Scalar {
+        self.frame.error * self.frame.scale * Scalar::from_f64(3.0)
+    }
+
     /// What GJK moves points by as it compares them.
     pub(super) fn noise(&self) -> V::Scalar {
         self.frame.noise

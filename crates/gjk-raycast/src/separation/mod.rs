@@ -90,6 +90,11 @@ impl<V: Vector> Wanted<V> {
             && self.sub_algorithm == SubAlgorithm::Regions
             && !(self.tolerance > Scalar::ZERO)
     }
+
+    /// The same question for the search of any query.
+    fn plain(&self) -> Self {
+        Self::new(self.of_overlap, SignedDistanceOptions { axis: None, ..self.options }, self.extra)
+    }
 }
 
 /// The result about the cores; lengths in their unit.
@@ -151,10 +156,14 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     let end = cores.approach(wanted, &mut state, closest, observer);
     if closest.is_none() && cores.are_near(&mut state) {
         is_near = true;
+        // Where rounding decides, it has to decide alike wherever a query begins.
+        if !IS_DEPTH && extra.is_some() && !wanted.is_plain() {
+            return separation::<V, IS_DEPTH>(cores, &wanted.plain(), observer);
+        }
         if tells_all(cores, Some(&state))
             && let Some(near) = &cores.near
         {
-            return Separation::of_near_contact(cores, near);
+            return Separation::of_near_contact(cores, near).with_best_plane(cores, &state);
         }
     }
     let is_known = if IS_DEPTH {
@@ -229,6 +238,7 @@ fn reach_closely<V: Vector>(
             None => Separation { status: Status::Stalled, ..known },
         }
     };
+    let known = known.with_best_plane(cores, state);
     if wanted.is_depth() { known } else { known.with_common_points(cores, state) }
 }
 
@@ -301,6 +311,21 @@ impl<V: Vector> Separation<V> {
         Self { outer, axis, ..self }
     }
 
+    /// The same with the plane of the measurement near contact, and then GJK's best one, if they prove more.
+    #[cold]
+    fn with_best_plane(mut self, cores: &Cores<'_, V>, state: &Gjk<V>) -> Self {
+        let Some(near) = &cores.near else { return self };
+        let radius = cores.radius() * near.frame.per_unit;
+        let by_near = (-near.lower - radius, near.normal);
+        for (outer, axis) in [by_near].into_iter().chain(cores.best_plane(state)) {
+            // NaN is no bound.
+            if outer < self.outer {
+                (self.outer, self.axis) = (outer, axis);
+            }
+        }
+        self
+    }
+
     /// The same with GJK's points, if cores overlap and those are nearer to one another than the ends of the way out.
     fn with_common_points(self, cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
         let MetPoint { point, points, .. } = MetPoint::new(cores, state);
@@ -313,9 +338,9 @@ impl<V: Vector> Separation<V> {
         -(self.depth * cores.scale()) - cores.radius()
     }
 
-    /// Bounds on it, and whether they are as near to one another as a measurement near contact leaves them.
+    /// Bounds on it.
     #[inline(always)]
-    fn bounds(&self, cores: &Cores<'_, V>) -> (V::Scalar, V::Scalar, bool) {
+    fn bounds(&self, cores: &Cores<'_, V>) -> (V::Scalar, V::Scalar) {
         let (scale, radius) = (cores.scale(), cores.radius());
         let world = |depth: V::Scalar| -(depth * scale) - radius;
         let (lower, upper) = (world(self.outer), world(self.inner));
@@ -327,19 +352,9 @@ impl<V: Vector> Separation<V> {
         match &cores.near {
             Some(near) => {
                 let lower = lower.max(near.lower * scale - lost(near.lower));
-                let upper = upper.min(near.upper * scale + lost(near.upper));
-                (lower, upper, upper - lower <= near.frame.error * (scale + scale))
+                (lower, upper.min(near.upper * scale + lost(near.upper)))
             }
-            None => (lower, upper, false),
-        }
-    }
-
-    #[inline(always)]
-    fn status(&self, is_bounded: bool, is_narrow: bool) -> Status {
-        match self.status {
-            Status::Converged if !is_bounded => Status::Stalled,
-            Status::Stalled if is_bounded && is_narrow => Status::Converged,
-            status => status,
+            None => (lower, upper),
         }
     }
 
@@ -353,12 +368,18 @@ impl<V: Vector> Separation<V> {
 
     #[inline]
     pub(crate) fn signed_distance(&self, cores: &Cores<'_, V>) -> SignedDistance<V> {
-        let (lower, upper, is_narrow) = self.bounds(cores);
+        let (lower, upper) = self.bounds(cores);
         // Numbers that are not finite, or contradict one another, come from an invalid support map, and bound nothing.
         let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
         let infinity = V::Scalar::infinity();
         let (lower, upper) = if is_bounded { (lower, upper) } else { (-infinity, infinity) };
-        let status = self.status(is_bounded, is_narrow);
+        // As near to one another as a measurement near contact leaves the bounds.
+        let is_narrow = cores.near.as_ref().is_some_and(|near| upper - lower <= near.frame.error * (cores.scale() + cores.scale()));
+        let status = match self.status {
+            Status::Converged if !is_bounded => Status::Stalled,
+            Status::Stalled if is_bounded && is_narrow => Status::Converged,
+            status => status,
+        };
         let signed_distance = self.value(cores).max(lower).min(upper);
         let [point_a, point_b] = self.ends(cores);
         SignedDistance {
@@ -377,22 +398,32 @@ impl<V: Vector> Separation<V> {
 
     /// The distance, which is zero if the bodies overlap.
     #[inline]
-    pub(crate) fn distance(&self, cores: &Cores<'_, V>) -> Distance<V> {
+    pub(crate) fn distance(&self, cores: &Cores<'_, V>, wanted: &Wanted<V>) -> Distance<V> {
         let zero = V::Scalar::ZERO;
-        let (lower, upper, is_narrow) = self.bounds(cores);
+        let (signed_lower, upper) = self.bounds(cores);
         // The support points of an invalid shape may contradict one another, or be no numbers: nothing is known.
-        let is_bounded = lower <= upper && upper.is_finite();
+        let is_bounded = signed_lower <= upper && upper.is_finite();
         let (lower, upper) = match is_bounded {
             true if self.inner >= zero => (zero, zero),
-            true => (lower.max(zero), upper.max(zero)),
+            true => (signed_lower.max(zero), upper.max(zero)),
             false => (zero, V::Scalar::infinity()),
         };
-        let status = self.status(is_bounded, is_narrow);
+        let allowed = cores.widest();
+        let is_narrow = upper - lower <= allowed + wanted.tolerance.max(zero) * lower || lower > wanted.options.limit;
+        // Bodies within rounding of contact touch if a second measurement that was not cut short says so.
+        let is_looked_at = |near: &NearContact<V>| near.end != End::IterationLimit;
+        let is_decided = lower > zero || upper <= zero || cores.near.as_ref().is_some_and(is_looked_at);
+        let status = match self.status {
+            _ if is_bounded && is_narrow && is_decided => Status::Converged,
+            Status::Converged if cores.near.as_ref().is_none_or(is_looked_at) => Status::Stalled,
+            Status::Converged => Status::IterationLimit,
+            status => status,
+        };
         let value = self.value(cores);
-        let is_met = self.overlap.unwrap_or(value <= zero || status == Status::Converged);
+        let is_met = upper <= zero || status == Status::Converged || self.overlap.unwrap_or(value <= zero);
         let overlap = is_met && !(lower > zero);
         let is_deep = overlap && !(value >= -upper);
-        let n = if lower > zero { self.axis } else { -self.u };
+        let separates = signed_lower >= -allowed;
         let [point_a, point_b] = if overlap { self.common_points(cores) } else { self.ends(cores) };
         Distance {
             distance: value.max(lower).min(upper),
@@ -401,7 +432,7 @@ impl<V: Vector> Separation<V> {
             overlap,
             point_a,
             point_b,
-            normal: if is_deep { None } else { Some(n) },
+            normal: if separates && !is_deep { Some(self.axis) } else { None },
             status,
             iterations: cores.iterations,
         }

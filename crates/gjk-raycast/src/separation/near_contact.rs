@@ -270,7 +270,7 @@ impl<V: Vector> Known<V> {
     }
 
     /// The answer from the closest points of both cores, if the plane across the vector between them meets them to both
-    /// errors and is beyond the radii: then there is nothing to search.
+    /// errors and is certainly beyond the radii: then there is nothing to search.
     fn between_closest(&self, pair: &mut AnyPair<'_, V>, points: PointPair<V>) -> Option<NearContact<V>> {
         let v = pair.vector_between(points, self.frame.offset);
         let plane = self.plane(pair, v)?;
@@ -288,7 +288,9 @@ impl<V: Vector> Known<V> {
                 best = self.plane(pair, n).filter(|plane| plane.certain() > best.certain()).unwrap_or(best);
             }
         }
-        Some(near_contact_at(&self.frame, (best, upper), (End::Separated, 1), (points, v.norm())))
+        let found = near_contact_at(&self.frame, (best, upper), (End::Separated, 1), (points, v.norm()));
+        // A vector as short as its rounding hardly tells the plane's direction.
+        found.is_separated().then_some(found)
     }
 
     /// The result of GJK, as it was begun or from where all queries begin.
@@ -313,7 +315,7 @@ impl<V: Vector> Known<V> {
         };
         let before = self.best_plane(pair, &state);
         let is_settled =
-            |(plane, upper): &(SupportPlane<V>, V::Scalar)| plane.meets(*upper) && plane.level > self.frame.radius;
+            |(plane, upper): &(SupportPlane<V>, V::Scalar)| plane.meets(*upper) && plane.is_beyond(self.frame.radius);
         if before.as_ref().is_some_and(is_settled) {
             return before.map(|found| seen(&state, End::Separated, found));
         }
@@ -388,9 +390,16 @@ impl<V: Vector> Known<V> {
     /// The plane across `n` that supports the difference.
     fn plane(&self, pair: &mut AnyPair<'_, V>, n: V) -> Option<SupportPlane<V>> {
         let n = n.unit()?;
-        let level = self.level(n, pair.support(-n).1);
+        let mut level = self.level(n, pair.support(-n).1);
         // The unit vector's length is right to 6 roundings, and the sum of the products is rounded once.
-        let rounded = roundings(8.0, level.abs()) + roundings(4.0, self.frame.radius);
+        let mut rounded = roundings(8.0, level.abs());
+        if self.frame.radius > Scalar::ZERO {
+            // The level is that of the radius, and not only the gap's: it is divided by the length, which is one and
+            // half of what its square is beyond one. That is exact to a rounding, and so is the difference.
+            let beyond_one = dot_minus((0..V::DIM).map(|i| (n.get(i), n.get(i))), V::Scalar::ONE);
+            level -= level * (beyond_one * V::Scalar::from_f64(0.5));
+            rounded = roundings(4.0, level.abs()) + roundings(2.0, self.frame.radius);
+        }
         level.is_finite().then(|| SupportPlane { n, level, error: raised(self.points.along(n) + rounded) })
     }
 
