@@ -180,7 +180,7 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.pair.peeled = peeled;
         let Some(near) = &self.near else { return false };
         self.iterations += near.iterations.saturating_sub(before);
-        if wanted.is_depth() { near.is_closed() } else { near.is_settled(left) }
+        if wanted.is_depth() { near.is_closed() } else { near.is_settled() }
     }
 
     /// Whether the present error suffices for cores at this distance: it is small beside the distance, and beside the

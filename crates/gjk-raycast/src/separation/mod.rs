@@ -154,12 +154,12 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     }
     let mut state = cores.first_state(options.axis);
     let end = cores.approach(wanted, &mut state, closest, observer);
-    if closest.is_none() && cores.are_near(&mut state) {
-        is_near = true;
+    is_near |= closest.is_none() && cores.are_near(&mut state);
+    if is_near && !IS_DEPTH && extra.is_some() && !wanted.is_plain() {
         // Where rounding decides, it has to decide alike wherever a query begins.
-        if !IS_DEPTH && extra.is_some() && !wanted.is_plain() {
-            return separation::<V, IS_DEPTH>(cores, &wanted.plain(), observer);
-        }
+        return separation::<V, IS_DEPTH>(cores, &wanted.plain(), observer);
+    }
+    if is_near && closest.is_none() {
         if tells_all(cores, Some(&state))
             && let Some(near) = &cores.near
         {
@@ -411,13 +411,13 @@ impl<V: Vector> Separation<V> {
         let allowed = cores.widest();
         let is_narrow = upper - lower <= allowed + wanted.tolerance.max(zero) * lower || lower > wanted.options.limit;
         // Bodies within rounding of contact touch if a second measurement that was not cut short says so.
-        let is_looked_at = |near: &NearContact<V>| near.end != End::IterationLimit;
-        let is_decided = lower > zero || upper <= zero || cores.near.as_ref().is_some_and(is_looked_at);
-        let status = match self.status {
-            _ if is_bounded && is_narrow && is_decided => Status::Converged,
-            Status::Converged if cores.near.as_ref().is_none_or(is_looked_at) => Status::Stalled,
-            Status::Converged => Status::IterationLimit,
-            status => status,
+        let is_cut_short = self.status == Status::IterationLimit
+            || cores.near.as_ref().is_some_and(|near| near.end == End::IterationLimit);
+        let is_decided = lower > zero || upper <= zero || cores.near.is_some() && !is_cut_short;
+        let status = match is_bounded && is_narrow && is_decided {
+            true => Status::Converged,
+            false if is_cut_short => Status::IterationLimit,
+            false => Status::Stalled,
         };
         let value = self.value(cores);
         let is_met = upper <= zero || status == Status::Converged || self.overlap.unwrap_or(value <= zero);

@@ -69,12 +69,9 @@ impl<V: Vector> NearContact<V> {
         is_found.then_some(true)
     }
 
-    /// Whether a further search would find no more: it is [closed](Self::is_closed), or the bodies have a point in
-    /// common far beyond any plane that was found, by a search that did not give up.
-    pub(crate) fn is_settled(&self, max_iterations: usize) -> bool {
-        let is_over = self.overlaps_certainly || self.iterations < max_iterations;
-        let is_deep = is_over && self.gap < -self.frame.error * V::Scalar::from_f64(NEAR);
-        self.is_closed() || is_deep && self.length - self.frame.radius <= self.frame.error
+    /// Whether a further search would find no more.
+    pub(crate) fn is_settled(&self) -> bool {
+        self.is_closed() || self.overlaps_certainly
     }
 
     /// Whether the points are as near as the plane, to the error of the points in any direction. If it is not known
@@ -330,13 +327,12 @@ impl<V: Vector> Known<V> {
         }
         let mut best = self.best_plane(pair, &state);
         // Within rounding a search may go astray, and end around zero, or where no plane is as far as its points.
-        let is_doubtful =
-            |(best, _): &(SupportPlane<V>, _)| best.level <= frame.radius || best.level + best.error < state.length;
+        let is_doubtful = |(best, _): &(SupportPlane<V>, _)| !best.is_beyond(frame.radius);
         if best.as_ref().is_none_or(is_doubtful) {
             let certain = |(best, _): &(SupportPlane<V>, _)| best.certain();
             if before.as_ref().map(certain) > best.as_ref().map(certain) {
-                let iterations = state.iterations;
-                (state, best) = (begun, before);
+                let (iterations, nearest) = (state.iterations, best.map_or(Float::infinity(), |(_, upper)| upper));
+                (state, best) = (begun, before.map(|(plane, upper)| (plane, upper.min(nearest))));
                 state.iterations = iterations;
             }
         }
@@ -356,7 +352,9 @@ impl<V: Vector> Known<V> {
             [p, q] if V::DIM == 3 && self.points.is_uneven() => Some(about_edge(p - q, state.axis)),
             _ => None,
         };
-        for n in faces.chain(normal).chain([state.axis]).chain(about.into_iter().flatten()) {
+        let about = about.into_iter().flatten();
+        let beside = if let [p] = *points { Some(self.points.most_certain(p)) } else { None };
+        for n in faces.chain(normal).chain([state.axis]).chain(about).chain(beside) {
             let certain = best.as_ref().map_or(-V::Scalar::infinity(), SupportPlane::certain);
             if self.may_be_beyond(n, points, certain)
                 && let Some(plane) = self.plane(pair, n)
