@@ -96,11 +96,13 @@ compiled_once! {
     ) -> Distance<V> {
         let DistanceOptions { tolerance, limit, max_iterations, axis, sub_algorithm, extra } = options;
         let axis = axis.map(|axis| if is_swapped { -axis } else { axis });
+        // No distance is negative. NaN is no limit.
+        let limit = if limit < Scalar::ZERO { Scalar::ZERO } else { limit };
         let of_separation = SignedDistanceOptions { limit, max_iterations, axis, ..SignedDistanceOptions::new() };
         let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation, extra) };
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, false>(&mut cores, &wanted, observer));
-        let mut answer = found.distance(&cores);
+        let mut answer = found.distance(&cores, &wanted);
         // In place: a copy would wait until the answer is in the cache.
         if is_swapped {
             answer = answer.reversed();

@@ -6,17 +6,15 @@ use convex_support::{Core, CoreKind, Hint, Posed, Scalar, SupportMap, Vector, co
 use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
-use crate::cast::{
-    CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, cast, certain_closely, settle_start,
-};
+use crate::cast::{CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, cast, certain_closely, settle_start};
 use crate::distance::distance_of_any;
 use crate::extra::in_static;
 use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::signed_distance::signed_distance_of_any;
 use crate::{
-    DistanceOptions, HalfSpace, Impact, Iterate, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCastError,
-    RayCastOptions, SignedDistance, SignedDistanceOptions, StartInContact, Status, WarmStart,
+    DistanceOptions, HalfSpace, Impact, Iterate, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray,
+    RayCastError, RayCastOptions, SignedDistance, SignedDistanceOptions, StartInContact, Status, WarmStart,
 };
 
 /// Shapes may be in contact if they are apart by so many ε of their sizes and of their distance from the origin, and so
@@ -385,9 +383,11 @@ impl<V: Vector> StartingPair<'_, V> {
         let mut iterations = start.iterations;
         let mut search = |motion| self.later(motion, options, slack, &start, &mut iterations);
         // What got deeper on the way to the start, backwards, never does after it.
-        let later = search(motion).or_else(|| match search(Motion { velocity_a: -motion.velocity_a, velocity_b: -motion.velocity_b }) {
-            Some(Later::Deeper(_)) => Some(Later::Never(start.normal)),
-            _ => None,
+        let later = search(motion).or_else(|| {
+            match search(Motion { velocity_a: -motion.velocity_a, velocity_b: -motion.velocity_b }) {
+                Some(Later::Deeper(_)) => Some(Later::Never(start.normal)),
+                _ => None,
+            }
         });
         Some(InContact { start, later, iterations })
     }

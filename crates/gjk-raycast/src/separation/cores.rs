@@ -180,7 +180,7 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.pair.peeled = peeled;
         let Some(near) = &self.near else { return false };
         self.iterations += near.iterations.saturating_sub(before);
-        if wanted.is_depth() { near.is_closed() } else { near.is_settled(left) }
+        if wanted.is_depth() { near.is_closed() } else { near.is_settled() }
     }
 
     /// Whether the present error suffices for cores at this distance: it is small beside the distance, and beside the
@@ -285,6 +285,13 @@ impl<'a, V: Vector> Cores<'a, V> {
     #[inline(always)]
     pub(super) fn greatest_length(&self, p: V) -> V::Scalar {
         p.norm() + self.uncertainty.as_ref().map_or(self.error, |known| known.beyond(p)) + self.peeled_error
+    }
+
+    /// How wide the bracket on a distance may be at most that rounding alone has left, in the world's unit: the bounds
+    /// that end a search differ by the noise, and each is wrong by no more than the error.
+    #[inline(always)]
+    pub(super) fn widest(&self) -> V::Scalar {
+        self.frame.error * self.frame.scale * Scalar::from_f64(3.0)
     }
 
     /// What GJK moves points by as it compares them.

@@ -90,6 +90,11 @@ impl<V: Vector> Wanted<V> {
             && self.sub_algorithm == SubAlgorithm::Regions
             && !(self.tolerance > Scalar::ZERO)
     }
+
+    /// The same question for the search of any query.
+    fn plain(&self) -> Self {
+        Self::new(self.of_overlap, SignedDistanceOptions { axis: None, ..self.options }, self.extra)
+    }
 }
 
 /// The result about the cores; lengths in their unit.
@@ -149,12 +154,16 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     }
     let mut state = cores.first_state(options.axis);
     let end = cores.approach(wanted, &mut state, closest, observer);
-    if closest.is_none() && cores.are_near(&mut state) {
-        is_near = true;
+    is_near |= closest.is_none() && cores.are_near(&mut state);
+    if is_near && !IS_DEPTH && extra.is_some() && !wanted.is_plain() {
+        // Where rounding decides, it has to decide alike wherever a query begins.
+        return separation::<V, IS_DEPTH>(cores, &wanted.plain(), observer);
+    }
+    if is_near && closest.is_none() {
         if tells_all(cores, Some(&state))
             && let Some(near) = &cores.near
         {
-            return Separation::of_near_contact(cores, near);
+            return Separation::of_near_contact(cores, near).with_best_plane(cores, &state);
         }
     }
     let is_known = if IS_DEPTH {
@@ -232,6 +241,7 @@ fn reach_closely<V: Vector>(
             None => Separation { status: Status::Stalled, ..known },
         }
     };
+    let known = known.with_best_plane(cores, state);
     if wanted.is_depth() { known } else { known.with_common_points(cores, state) }
 }
 
@@ -315,6 +325,22 @@ impl<V: Vector> Separation<V> {
         self.outer - self.inner
     }
 
+    /// The same with the plane of the measurement near contact, and then GJK's best one, if they prove more and have
+    /// the points across them.
+    #[cold]
+    fn with_best_plane(mut self, cores: &Cores<'_, V>, state: &Gjk<V>) -> Self {
+        let Some(near) = &cores.near else { return self };
+        let radius = cores.radius() * near.frame.per_unit;
+        let by_near = (-near.lower - radius, near.normal);
+        for (outer, axis) in [by_near].into_iter().chain(cores.best_plane(state)) {
+            // NaN is no bound.
+            if outer < self.outer && self.lies_across(axis, cores) {
+                (self.outer, self.axis) = (outer, axis);
+            }
+        }
+        self
+    }
+
     /// The same with GJK's points, if cores overlap and those are nearer to one another than the ends of the way out.
     fn with_common_points(self, cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
         let MetPoint { point, points, .. } = MetPoint::new(cores, state);
@@ -327,10 +353,9 @@ impl<V: Vector> Separation<V> {
         -(self.depth * cores.scale()) - cores.radius()
     }
 
-    /// Bounds on it with the axis that proves the lower one, and whether they are as near to one another as a
-    /// measurement near contact leaves them.
+    /// Bounds on it, with the axis of the plane that proves the lower one.
     #[inline(always)]
-    fn bounds(&self, cores: &Cores<'_, V>) -> (V::Scalar, V::Scalar, V, bool) {
+    fn bounds(&self, cores: &Cores<'_, V>) -> (V::Scalar, V::Scalar, V) {
         let (scale, radius) = (cores.scale(), cores.radius());
         let world = |depth: V::Scalar| -(depth * scale) - radius;
         let (lower, upper) = (world(self.outer), world(self.inner));
@@ -344,19 +369,9 @@ impl<V: Vector> Separation<V> {
                 let by_look = near.lower * scale - lost(near.lower);
                 let is_better = by_look > lower && self.lies_across(near.normal, cores);
                 let (lower, axis) = if is_better { (by_look, near.normal) } else { (lower, self.axis) };
-                let upper = upper.min(near.upper * scale + lost(near.upper));
-                (lower, upper, axis, upper - lower <= near.frame.error * (scale + scale))
+                (lower, upper.min(near.upper * scale + lost(near.upper)), axis)
             }
-            None => (lower, upper, self.axis, false),
-        }
-    }
-
-    #[inline(always)]
-    fn status(&self, is_bounded: bool, is_narrow: bool) -> Status {
-        match self.status {
-            Status::Converged if !is_bounded => Status::Stalled,
-            Status::Stalled if is_bounded && is_narrow => Status::Converged,
-            status => status,
+            None => (lower, upper, self.axis),
         }
     }
 
@@ -370,7 +385,7 @@ impl<V: Vector> Separation<V> {
 
     #[inline]
     pub(crate) fn signed_distance(&self, cores: &Cores<'_, V>, wanted: &Wanted<V>) -> SignedDistance<V> {
-        let (lower, upper, normal, _) = self.bounds(cores);
+        let (lower, upper, normal) = self.bounds(cores);
         // Numbers that are not finite, or contradict one another, come from an invalid support map, and bound nothing.
         let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
         let infinity = V::Scalar::infinity();
@@ -401,22 +416,32 @@ impl<V: Vector> Separation<V> {
 
     /// The distance, which is zero if the bodies overlap.
     #[inline]
-    pub(crate) fn distance(&self, cores: &Cores<'_, V>) -> Distance<V> {
+    pub(crate) fn distance(&self, cores: &Cores<'_, V>, wanted: &Wanted<V>) -> Distance<V> {
         let zero = V::Scalar::ZERO;
-        let (lower, upper, axis, is_narrow) = self.bounds(cores);
+        let (signed_lower, upper, axis) = self.bounds(cores);
         // The support points of an invalid shape may contradict one another, or be no numbers: nothing is known.
-        let is_bounded = lower <= upper && upper.is_finite();
+        let is_bounded = signed_lower <= upper && upper.is_finite();
         let (lower, upper) = match is_bounded {
             true if self.inner >= zero => (zero, zero),
-            true => (lower.max(zero), upper.max(zero)),
+            true => (signed_lower.max(zero), upper.max(zero)),
             false => (zero, V::Scalar::infinity()),
         };
-        let status = self.status(is_bounded, is_narrow);
+        let allowed = cores.widest();
+        let is_narrow = upper - lower <= allowed + wanted.tolerance.max(zero) * lower || lower > wanted.options.limit;
+        // Bodies within rounding of contact touch if a second measurement that was not cut short says so.
+        let is_cut_short = self.status == Status::IterationLimit
+            || cores.near.as_ref().is_some_and(|near| near.end == End::IterationLimit);
+        let is_decided = lower > zero || upper <= zero || cores.near.is_some() && !is_cut_short;
+        let status = match is_bounded && is_narrow && is_decided {
+            true => Status::Converged,
+            false if is_cut_short => Status::IterationLimit,
+            false => Status::Stalled,
+        };
         let value = self.value(cores);
-        let is_met = self.overlap.unwrap_or(value <= zero || status == Status::Converged);
+        let is_met = upper <= zero || status == Status::Converged || self.overlap.unwrap_or(value <= zero);
         let overlap = is_met && !(lower > zero);
         let is_deep = overlap && !(value >= -upper);
-        let n = if lower > zero { axis } else { -self.u };
+        let separates = signed_lower >= -allowed;
         let [point_a, point_b] = if overlap { self.common_points(cores) } else { self.ends(cores) };
         Distance {
             distance: value.max(lower).min(upper),
@@ -425,7 +450,7 @@ impl<V: Vector> Separation<V> {
             overlap,
             point_a,
             point_b,
-            normal: if is_deep { None } else { Some(n) },
+            normal: if separates && !is_deep { Some(axis) } else { None },
             status,
             iterations: cores.iterations,
         }

@@ -69,12 +69,9 @@ impl<V: Vector> NearContact<V> {
         is_found.then_some(true)
     }
 
-    /// Whether a further search would find no more: it is [closed](Self::is_closed), or the bodies have a point in
-    /// common far beyond any plane that was found, by a search that did not give up.
-    pub(crate) fn is_settled(&self, max_iterations: usize) -> bool {
-        let is_over = self.overlaps_certainly || self.iterations < max_iterations;
-        let is_deep = is_over && self.gap < -self.frame.error * V::Scalar::from_f64(NEAR);
-        self.is_closed() || is_deep && self.length - self.frame.radius <= self.frame.error
+    /// Whether a further search would find no more.
+    pub(crate) fn is_settled(&self) -> bool {
+        self.is_closed() || self.overlaps_certainly
     }
 
     /// Whether the points are as near as the plane, to the error of the points in any direction. If it is not known
@@ -270,7 +267,7 @@ impl<V: Vector> Known<V> {
     }
 
     /// The answer from the closest points of both cores, if the plane across the vector between them meets them to both
-    /// errors and is beyond the radii: then there is nothing to search.
+    /// errors and is certainly beyond the radii: then there is nothing to search.
     fn between_closest(&self, pair: &mut AnyPair<'_, V>, points: PointPair<V>) -> Option<NearContact<V>> {
         let v = pair.vector_between(points, self.frame.offset);
         let plane = self.plane(pair, v)?;
@@ -288,7 +285,9 @@ impl<V: Vector> Known<V> {
                 best = self.plane(pair, n).filter(|plane| plane.certain() > best.certain()).unwrap_or(best);
             }
         }
-        Some(near_contact_at(&self.frame, (best, upper), (End::Separated, 1), (points, v.norm())))
+        let found = near_contact_at(&self.frame, (best, upper), (End::Separated, 1), (points, v.norm()));
+        // A vector as short as its rounding hardly tells the plane's direction.
+        found.is_separated().then_some(found)
     }
 
     /// The result of GJK, as it was begun or from where all queries begin.
@@ -313,7 +312,7 @@ impl<V: Vector> Known<V> {
         };
         let before = self.best_plane(pair, &state);
         let is_settled =
-            |(plane, upper): &(SupportPlane<V>, V::Scalar)| plane.meets(*upper) && plane.level > self.frame.radius;
+            |(plane, upper): &(SupportPlane<V>, V::Scalar)| plane.meets(*upper) && plane.is_beyond(self.frame.radius);
         if before.as_ref().is_some_and(is_settled) {
             return before.map(|found| seen(&state, End::Separated, found));
         }
@@ -328,13 +327,12 @@ impl<V: Vector> Known<V> {
         }
         let mut best = self.best_plane(pair, &state);
         // Within rounding a search may go astray, and end around zero, or where no plane is as far as its points.
-        let is_doubtful =
-            |(best, _): &(SupportPlane<V>, _)| best.level <= frame.radius || best.level + best.error < state.length;
+        let is_doubtful = |(best, _): &(SupportPlane<V>, _)| !best.is_beyond(frame.radius);
         if best.as_ref().is_none_or(is_doubtful) {
             let certain = |(best, _): &(SupportPlane<V>, _)| best.certain();
             if before.as_ref().map(certain) > best.as_ref().map(certain) {
-                let iterations = state.iterations;
-                (state, best) = (begun, before);
+                let (iterations, nearest) = (state.iterations, best.map_or(Float::infinity(), |(_, upper)| upper));
+                (state, best) = (begun, before.map(|(plane, upper)| (plane, upper.min(nearest))));
                 state.iterations = iterations;
             }
         }
@@ -354,7 +352,9 @@ impl<V: Vector> Known<V> {
             [p, q] if V::DIM == 3 && self.points.is_uneven() => Some(about_edge(p - q, state.axis)),
             _ => None,
         };
-        for n in faces.chain(normal).chain([state.axis]).chain(about.into_iter().flatten()) {
+        let about = about.into_iter().flatten();
+        let beside = if let [p] = *points { Some(self.points.most_certain(p)) } else { None };
+        for n in faces.chain(normal).chain([state.axis]).chain(about).chain(beside) {
             let certain = best.as_ref().map_or(-V::Scalar::infinity(), SupportPlane::certain);
             if self.may_be_beyond(n, points, certain)
                 && let Some(plane) = self.plane(pair, n)
@@ -388,9 +388,16 @@ impl<V: Vector> Known<V> {
     /// The plane across `n` that supports the difference.
     fn plane(&self, pair: &mut AnyPair<'_, V>, n: V) -> Option<SupportPlane<V>> {
         let n = n.unit()?;
-        let level = self.level(n, pair.support(-n).1);
+        let mut level = self.level(n, pair.support(-n).1);
         // The unit vector's length is right to 6 roundings, and the sum of the products is rounded once.
-        let rounded = roundings(8.0, level.abs()) + roundings(4.0, self.frame.radius);
+        let mut rounded = roundings(8.0, level.abs());
+        if self.frame.radius > Scalar::ZERO {
+            // The level is that of the radius, and not only the gap's: it is divided by the length, which is one and
+            // half of what its square is beyond one. That is exact to a rounding, and so is the difference.
+            let beyond_one = dot_minus((0..V::DIM).map(|i| (n.get(i), n.get(i))), V::Scalar::ONE);
+            level -= level * (beyond_one * V::Scalar::from_f64(0.5));
+            rounded = roundings(4.0, level.abs()) + roundings(2.0, self.frame.radius);
+        }
         level.is_finite().then(|| SupportPlane { n, level, error: raised(self.points.along(n) + rounded) })
     }
 

@@ -75,6 +75,13 @@ impl<V: Vector> Uncertainty<V> {
         n.dot(self.stated).min(self.stated_length) + n.dot(self.lost)
     }
 
+    /// A vector along the unit vector `n` for which `n·p`, less its error, is greatest: with `e` the error of the
+    /// coordinates, `n·p − Σ eᵢ|nᵢ|` is a sum of the products of `|nᵢ|` and `|pᵢ| − eᵢ`. Zero if none is positive.
+    pub(super) fn most_certain(&self, p: V) -> V {
+        let least = self.stated + self.lost;
+        p.max(least) - least + (p.min(-least) + least)
+    }
+
     /// A bound on the length of the error of a point.
     #[inline(never)]
     pub(crate) fn length(&self) -> V::Scalar {
