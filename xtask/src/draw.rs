@@ -61,12 +61,12 @@ pub(crate) fn query((kind, draw): (&str, Draw), precision: &str, dimension: usiz
 }
 
 /// `10ˣ`, the same on every machine.
-fn decades(x: f64) -> f64 {
+pub(crate) fn decades(x: f64) -> f64 {
     libm::pow(10.0, x)
 }
 
 /// The query with one more field.
-fn with(mut query: Value, field: &str, value: impl Into<Value>) -> Value {
+pub(crate) fn with(mut query: Value, field: &str, value: impl Into<Value>) -> Value {
     query[field] = value.into();
     query
 }

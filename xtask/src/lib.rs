@@ -8,6 +8,7 @@
 )]
 
 pub mod bits;
+mod claims;
 pub mod docs;
 mod draw;
 pub mod engine;

@@ -27,7 +27,7 @@ use std::format;
 
 use num_traits::Float as _;
 use proptest::prelude::*;
-use proptest::test_runner::TestRunner;
+use proptest::test_runner::{RngSeed, TestRunner, contextualize_config};
 
 use crate::{
     CertainCrossing, CoreKind, Hint, LineQuery, Scalar, SupportMap, Vector, bounding_box, bounding_sphere, strategies,
@@ -44,13 +44,22 @@ type AnyShape<'s, V> = &'s dyn SupportMap<Vector = V>;
 /// A law of one shape and two directions; the last argument is the rounding that the shape states, as a length.
 type Law<V> = fn(AnyShape<'_, V>, V, V, <V as Vector>::Scalar) -> Result<(), TestCaseError>;
 
+/// The configuration of property tests that draw the same `cases` in every run, so that one commit has one verdict.
+///
+/// The environment variable `PROPTEST_RNG_SEED`, a number, draws others, and `PROPTEST_CASES` another number of them.
+#[must_use]
+pub fn config(cases: u32) -> ProptestConfig {
+    let rng_seed = RngSeed::Fixed(2004_11_20);
+    contextualize_config(ProptestConfig { cases, rng_seed, ..ProptestConfig::default() })
+}
+
 /// Checks every law for the shapes of a strategy, along [directions](strategies::direction) that are adversarial.
 ///
 /// # Panics
 /// If a law is broken. The message names the law, the shape and the directions.
 pub fn hold<S: SupportMap + Debug>(shapes: impl Strategy<Value = S>) {
     let directions = strategies::direction::<S::Vector>;
-    let mut runner = TestRunner::new(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() });
+    let mut runner = TestRunner::new(ProptestConfig { failure_persistence: None, ..config(256) });
     let outcome = runner.run(&(shapes, directions(), directions()), |(shape, d, e)| check(&shape, d, e));
     if let Err(error) = outcome {
         panic!("in {}: {error}", std::any::type_name::<S::Vector>());

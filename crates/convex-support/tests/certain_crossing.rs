@@ -10,7 +10,7 @@ use convex_support::{
     Vector3, line_crossing, support_value,
 };
 use proptest::prelude::*;
-use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
+use proptest::test_runner::TestRunner;
 
 type AnyShape<V> = Box<dyn CrossedByLine<Vector = V>>;
 
@@ -109,8 +109,8 @@ fn what_is_certain_in_single_precision_is_so_in_double() {
     let length = || (-1.3..1.3_f64).prop_map(|x| 10.0_f64.powf(x) as f32);
     let body = (0..KINDS, [length(), length(), length()], any::<[i8; 4]>(), any::<[bool; 2]>(), -3.0..100.0_f32);
     let line = (unit(), unit(), unit(), [0.0..1.0, 0.0..1.0], -8.0..0.0, 0..5_usize, 0..6_usize);
-    let cases = ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(60_000) };
-    TestRunner::new_with_rng(cases, TestRng::deterministic_rng(RngAlgorithm::ChaCha))
+    let cases = ProptestConfig { failure_persistence: None, ..convex_support::laws::config(60_000) };
+    TestRunner::new(cases)
         .run(&(body, line), |((kind, lengths, q, changes, far), (n, m, aside, [part, by], exponent, aim, from))| {
             let quaternion = if q == [0; 4] { [0.0, 0.0, 0.0, 1.0] } else { q.map(f32::from) };
             let parts = (kind, lengths, quaternion);

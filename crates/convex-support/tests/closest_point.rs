@@ -73,7 +73,8 @@ fn satisfies<V: Vector>(shapes: fn(V::Scalar) -> BoxedStrategy<AnyShape<V>>) {
         let x = reach.prop_flat_map(move |r| any::vector::<V>(size * V::Scalar::from_f64(r)));
         (shapes(size), x, proptest::collection::vec(any::direction::<V>(), 10), Just(size))
     });
-    let mut runner = TestRunner::new(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1000) });
+    let mut runner =
+        TestRunner::new(ProptestConfig { failure_persistence: None, ..convex_support::laws::config(1000) });
     let outcome = runner
         .run(&strategy, |(shape, x, directions, size)| check(&shape, x, &directions, size * V::Scalar::from_f64(4.0)));
     if let Err(error) = outcome {

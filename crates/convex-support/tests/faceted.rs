@@ -8,7 +8,7 @@ use convex_support::{
 };
 use num_traits::Float;
 use proptest::prelude::*;
-use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
+use proptest::test_runner::TestRunner;
 use std::cell::Cell;
 
 /// The corners of a box in a pose.
@@ -29,8 +29,8 @@ fn boxes<V: Vector>() {
         ([side(), side(), side()], any::pose::<V>(size), source, any::vector::<V>(size), Just(size))
     });
     let (hits, misses) = (Cell::new(0), Cell::new(0));
-    let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) };
-    let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+    let config = ProptestConfig { failure_persistence: None, ..convex_support::laws::config(2000) };
+    let mut runner = TestRunner::new(config);
     runner
         .run(&strategy, |(sides, (rotation, translation), source, target, size)| {
             let half_extents = V::from_fn(|i| sides[i]);

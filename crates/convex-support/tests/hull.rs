@@ -32,7 +32,8 @@ fn reduces<V: Vector>(largest: usize, cases: u32) {
         let directions = proptest::collection::vec(any::direction::<V>(), 20);
         (any::points::<V>(size, largest), directions, any::vector::<V>(size * V::Scalar::from_f64(1e3)))
     });
-    let mut runner = TestRunner::new(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(cases) });
+    let mut runner =
+        TestRunner::new(ProptestConfig { failure_persistence: None, ..convex_support::laws::config(cases) });
     let outcome = runner.run(&strategy, |(mut points, directions, shift)| {
         same_set(&points, &directions)?;
         // Far from the origin the points are rounded to a coarse grid, and many become coplanar.

@@ -67,6 +67,8 @@ fn any_solid() -> BoxedStrategy<AnyShape<DVec3>> {
 }
 
 proptest! {
+    #![proptest_config(convex_support::laws::config(256))]
+
     #[test]
     fn features_are_near_the_supporting_plane(shape in any_solid(), d in direction::<DVec3>(), slab in 0.0..0.5) {
         let n = d.normalize();

@@ -26,7 +26,7 @@ fn assert_same<V: Vector>(e1: &[Ellipsoid<V>], e2: &[Ellipsoid<V>], options: Mar
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(convex_support::laws::config(60))]
 
     #[test]
     fn in_space(pairs in prop::collection::vec((ellipsoid3(4.0, 2.0), ellipsoid3(4.0, 2.0)), 0..40)) {

@@ -31,7 +31,7 @@ fn assert_same<V: Vector>(scene: &mut Clearance<V>, links: &[Ellipsoid<V>]) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(convex_support::laws::config(60))]
 
     #[test]
     fn in_space(

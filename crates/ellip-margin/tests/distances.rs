@@ -43,7 +43,7 @@ trait TransposeMulOf: convex_support::Matrix {
 impl<M: convex_support::Matrix> TransposeMulOf for M {}
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(500))]
+    #![proptest_config(convex_support::laws::config(500))]
 
     #[test]
     fn certified_in_space(e1 in ellipsoid3(2.0, 2.0), e2 in ellipsoid3(2.0, 2.0)) {

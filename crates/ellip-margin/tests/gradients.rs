@@ -30,7 +30,7 @@ fn smooth(m: &Margin<DVec3>) -> bool {
 const H: f64 = 2e-3;
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(convex_support::laws::config(200))]
 
     #[test]
     fn motion_in_space(e1 in ellipsoid3(0.6, 2.0), e2 in ellipsoid3(0.6, 2.0), pivot in crate::common::within(2.0)) {

@@ -61,7 +61,7 @@ fn single(e: &Ellipsoid<DVec3>) -> Ellipsoid<Vec3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(convex_support::laws::config(300))]
 
     #[test]
     fn powers_of_two(e1 in ellipsoid3(4.0, 2.0), e2 in ellipsoid3(4.0, 2.0), f1 in ellipsoid2(4.0, 2.0), f2 in ellipsoid2(4.0, 2.0), k in -40i32..40) {

@@ -9,7 +9,7 @@ use ellip_margin::{InvalidQuery, MarginOptions, MarginTracker, Status, free_marg
 use proptest::prelude::*;
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(convex_support::laws::config(100))]
 
     /// The paper's method gives the right margin too: where it fails it says so and falls back.
     #[test]

@@ -28,7 +28,7 @@ fn spheroids_that_overlap_are_not_separated() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(convex_support::laws::config(2000))]
 
     /// Exact spheroids have double eigenvalues. The margin and the common scale are independent derivations.
     #[test]

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(convex_support::laws::config(100))]
 
     /// Bodies that have nothing to do with the ones before: the greatest jump there is.
     #[test]

@@ -145,6 +145,8 @@ mod gjk;
 mod half_space;
 mod intersects;
 mod iterative_ray_cast;
+#[cfg(feature = "laws")]
+pub mod laws;
 mod linear_cast;
 mod linkage;
 mod motion;

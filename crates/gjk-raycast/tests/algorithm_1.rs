@@ -139,7 +139,7 @@ fn rotation() -> impl Strategy<Value = [f64; 4]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1500))]
+    #![proptest_config(convex_support::laws::config(1500))]
 
     #[test]
     fn algorithms_1_and_3_agree(

@@ -40,6 +40,8 @@ fn shape() -> impl Strategy<Value = Box<dyn Shape>> {
 }
 
 proptest! {
+    #![proptest_config(convex_support::laws::config(256))]
+
     #[test]
     fn rays(target in shape(), source in vector(3.0), aim in vector(1.2)) {
         let ray = Ray { source, direction: aim - source };

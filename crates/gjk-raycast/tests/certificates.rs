@@ -109,7 +109,7 @@ fn solid<V: Vector3>(size: V::Scalar) -> BoxedStrategy<AnyShape<V>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1500))]
+    #![proptest_config(convex_support::laws::config(1500))]
 
     #[test]
     fn in_space((a, b, size) in scene::<DVec3>(solid), velocity in strategies::direction::<DVec3>()) {

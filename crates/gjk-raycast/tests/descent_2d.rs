@@ -49,7 +49,7 @@ fn polygon() -> impl Strategy<Value = (Vec<DVec2>, DVec2)> {
 const ALL: [SubAlgorithm; 3] = [SubAlgorithm::NearestFace, SubAlgorithm::Johnson, SubAlgorithm::SignedVolumes];
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(convex_support::laws::config(400))]
 
     /// `|V_{k+1}| ≤ |V_k|`, with equality only at the end; the closest point is reached in finitely many steps, no more
     /// than the polygon has vertices, and a few; `S_{k+1} ⊆ S_k ∪ {W_k}` is the smallest that holds `V_{k+1}`.

@@ -51,7 +51,7 @@ fn a_facet_along_the_motion_is_not_entered() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(convex_support::laws::config(400))]
 
     #[test]
     fn distance_in_space(a in cloud(false), b in cloud(false)) {

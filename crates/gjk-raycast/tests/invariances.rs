@@ -301,7 +301,7 @@ fn scaled<V: Turned>(scene: &Scene, exponent: i32) -> Result<(), TestCaseError> 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(convex_support::laws::config(64))]
 
     /// A power of two changes no bit of any mantissa, in both precisions, in space and in the plane, over the range
     /// that `docs/evidence.md` names: of no query, whatever it computes. Odd powers are no better than even ones,
@@ -396,7 +396,7 @@ fn held<V: Turned>(mut scene: Scene, exponent: i32) -> Result<(), TestCaseError>
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(convex_support::laws::config(96))]
 
     /// Found in single precision by exact rationals, where bodies were smaller than 1e-33: what a subnormal number
     /// loses is no part of it, but the least number there is. And sums of lengths near the largest number overflow: a
@@ -421,7 +421,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(convex_support::laws::config(300))]
 
     /// Moving both bodies by what their coordinates can hold changes no bit; by anything else, no more than the
     /// rounding of the coordinates.

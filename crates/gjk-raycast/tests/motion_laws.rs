@@ -102,7 +102,7 @@ fn agree(one: &MotionCast<DVec3>, other: &MotionCast<DVec3>, unit: f64) -> bool 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(192))]
+    #![proptest_config(convex_support::laws::config(192))]
 
     /// Distances at many times show no contact before the lower bound, and one at the upper bound.
     #[test]

@@ -39,7 +39,7 @@ fn shape(kind: usize, turn: DQuat) -> Posed<Box<dyn SupportMap<Vector = DVec3>>>
 const ROUNDING: f64 = 1e-13;
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(500))]
+    #![proptest_config(convex_support::laws::config(500))]
 
     /// Lemma 1: (x₂ − x₁)·(c₂ − c₁) ≥ ‖c₂ − c₁‖² for the points c closest to any two points x.
     #[test]

@@ -106,7 +106,7 @@ macro_rules! laws {
             use super::*;
 
             proptest! {
-                #![proptest_config(ProptestConfig::with_cases(200))]
+                #![proptest_config(convex_support::laws::config(200))]
 
                 #[test]
                 fn answers_are_consistent(a in $shape, b in $shape) {

@@ -44,7 +44,7 @@ fn agree<V: Vector>(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(convex_support::laws::config(300))]
 
     #[test]
     fn they_agree(a in cloud(), b in cloud(), offset in point(1.0)) {

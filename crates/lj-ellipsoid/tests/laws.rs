@@ -1,7 +1,7 @@
 //! Laws of the two ellipsoids, on points of wild aspect and scale.
 #![allow(clippy::needless_range_loop, reason = "formulas index several arrays at once")]
 
-use crate::common::{Rng, apply, assert_contains};
+use crate::common::{Rng, apply, assert_contains, config};
 use lj_ellipsoid::{
     Ellipsoid, Enclosing, EnclosingMethod, EnclosingOptions, FlatPolicy, HalfSpace, Inscribed, InscribedOptions,
     MovingPoints, Status, enclosing, inscribed, inscribed_in_hull,
@@ -132,7 +132,7 @@ fn scaled<const N: usize>(points: &[[f64; N]], exponent: i32, options: Enclosing
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(config(40))]
 
     /// Scaling by a power of two changes no bit of a mantissa, whatever the method and the dimension.
     #[test]
@@ -196,7 +196,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(config(200))]
 
     #[test]
     fn enclosing_contains_and_certifies_in_2d(points in cloud::<2>()) {

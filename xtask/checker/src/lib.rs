@@ -8,6 +8,7 @@ mod body;
 mod certificate;
 mod free;
 mod interval;
+mod planes;
 mod reader;
 mod robot;
 #[cfg(test)]
@@ -16,4 +17,5 @@ mod tests;
 pub use self::certificate::{Bounds, Verdict, judge};
 pub use self::free::{RobotProof, judge_robot};
 pub use self::interval::Interval;
+pub use self::planes::Solid;
 pub use self::reader::{Points, Reader, Unread};

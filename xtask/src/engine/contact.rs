@@ -1,11 +1,12 @@
 //! `contact`.
 
 use convex_support::Vector;
+use gjk_raycast::laws::{self, Numbers, PairPlanes, Report};
 use gjk_raycast::{Body, ContactPoint, SignedDistanceOptions, contact_after};
 
 use super::pair::Bodies;
 use super::signed_distance::{certain, options};
-use super::{Ask, How, Query, Question, scalar, status};
+use super::{Ask, How, Query, Question, directions, scalar, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::Problem;
 use crate::wire::fields::Fields;
@@ -50,6 +51,10 @@ impl<V: Space> Question for Pair<V> {
     fn beside(&self, found: &Self::Solution) -> String {
         let (Some(last), Some(b)) = (found, self.b.convex()) else { return String::new() };
         format!("{:?}", contact_after(last, &self.a, b, self.within, self.options))
+    }
+
+    fn claims(&self, starts: &[Numbers], planes: PairPlanes<'_>) -> Option<Report> {
+        Some(laws::contact_judged(&self.a, self.b.convex()?, self.within, &directions::<V>(starts), planes))
     }
 
     fn answer(&self, found: Self::Solution) -> Result<Answer, Problem> {

@@ -1,11 +1,12 @@
 //! `distance`.
 
 use convex_support::Vector;
+use gjk_raycast::laws::{self, Numbers, PairPlanes, Report};
 use gjk_raycast::{Body, DistanceOptions, Status, distance, distance_certificate};
 
 use super::gradient::{self, Gradient};
 use super::pair::Bodies;
-use super::{Ask, How, Query, Question, certificate, scalar, status};
+use super::{Ask, How, Query, Question, certificate, directions, scalar, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
@@ -75,6 +76,10 @@ impl<V: Space> Question for Pair<V> {
         let warm = d.normal.map(|normal| distance(&self.a, b, self.options.with_axis(normal)));
         let limited = distance(&self.a, b, self.options.with_limit(d.lower * scalar::<V>(0.5)));
         format!("{hessian:?} {warm:?} {limited:?}")
+    }
+
+    fn claims(&self, starts: &[Numbers], planes: PairPlanes<'_>) -> Option<Report> {
+        Some(laws::pair_judged(&self.a, self.b.convex()?, &directions::<V>(starts), planes))
     }
 
     fn answer(&self, (d, gradient): Self::Solution) -> Result<Answer, Problem> {

@@ -1,10 +1,11 @@
 //! `intersect`.
 
 use convex_support::{Scalar as _, Vector};
+use gjk_raycast::laws::{self, Numbers, PairPlanes, Report};
 use gjk_raycast::{Body, IntersectOptions, Intersection, SignedDistance, Status, intersection_certificate, intersects};
 
 use super::pair::Bodies;
-use super::{Ask, How, Query, Question, certificate, status};
+use super::{Ask, How, Query, Question, certificate, directions, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
@@ -53,6 +54,10 @@ impl<V: Space> Question for Pair<V> {
 
     fn certificate(&self, i: &Intersection<V>) -> Option<Answer> {
         self.b.convex().map(|b| certificate(intersection_certificate(&self.a, b, i)))
+    }
+
+    fn claims(&self, starts: &[Numbers], planes: PairPlanes<'_>) -> Option<Report> {
+        Some(laws::pair_judged(&self.a, self.b.convex()?, &directions::<V>(starts), planes))
     }
 
     fn answer(&self, i: Intersection<V>) -> Result<Answer, Problem> {

@@ -1,12 +1,13 @@
 //! `linear_cast`.
 
 use convex_support::Vector;
+use gjk_raycast::laws::{self, Numbers, PairPlanes, Report};
 use gjk_raycast::{Body, Impact, LinearCastOptions, Motion, linear_cast, linear_cast_certificate};
 
 use super::cast::{self, Limits, problem};
 use super::gradient::{self, Gradient};
 use super::pair::Bodies;
-use super::{Ask, How, Query, Question, certificate};
+use super::{Ask, How, Query, Question, certificate, directions};
 use crate::wire::answer::Answer;
 use crate::wire::error::Problem;
 use crate::wire::fields::{Coordinates, Fields};
@@ -82,6 +83,11 @@ impl<V: Space> Question for Cast<V> {
             Some(hit.refined(&features).gradient(&motion_a, &motion_b))
         });
         format!("{derivatives:?}")
+    }
+
+    fn claims(&self, starts: &[Numbers], planes: PairPlanes<'_>) -> Option<Report> {
+        let (b, starts) = (self.b.convex()?, directions::<V>(starts));
+        Some(laws::linear_cast_judged(&self.a, b, self.motion, self.options, &starts, planes))
     }
 
     fn answer(&self, (cast, gradient): Self::Solution) -> Result<Answer, Problem> {

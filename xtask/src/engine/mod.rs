@@ -29,6 +29,7 @@ use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{Scalar as _, SupportMap, Vector};
 #[cfg(not(target_family = "wasm"))]
 use cpu_time::ThreadTime;
+use gjk_raycast::laws::{Numbers, PairPlanes, Report};
 use gjk_raycast::{Certificate, DistanceOptions, distance_certificate};
 #[cfg(target_family = "wasm")]
 use std::time::Instant as ThreadTime;
@@ -78,6 +79,12 @@ trait Question {
         Ok((solution, certificate))
     }
 
+    /// What became of the claims of its answers, asked with several options and judged by these planes; the starts are
+    /// directions to begin with. `None` where there are no laws for the query.
+    fn claims(&self, _starts: &[Numbers], _planes: PairPlanes<'_>) -> Option<Report> {
+        None
+    }
+
     /// What the library says besides, for which the format has no field, such as second derivatives and batches.
     fn beside(&self, _: &Self::Solution) -> String {
         String::new()
@@ -95,6 +102,10 @@ pub trait Ask {
     /// Every bit that the library says: each field of the solution, what the format says of it, what proves it, and
     /// what is said besides.
     fn ask_everything(&self) -> Result<String, Problem>;
+
+    /// What became of the claims of its answers, asked with several options from several starts, and judged by the planes
+    /// of the bodies: of the target of a ray, where there is one. `None` where there are no laws for the query.
+    fn claims(&self, starts: &[Numbers], planes: PairPlanes<'_>) -> Option<Report>;
 
     /// Nanoseconds of thread CPU time that solving it takes: the least mean of three runs of about `microseconds` each.
     fn time(&self, microseconds: u64) -> f64;
@@ -117,6 +128,10 @@ impl<Q: Question> Ask for Q {
         let answer = in_range(self.answer(solution)?).map_err(|problem| problem.message);
         let _ = write!(said, " {answer:?} {certificate:?}");
         Ok(said)
+    }
+
+    fn claims(&self, starts: &[Numbers], planes: PairPlanes<'_>) -> Option<Report> {
+        Question::claims(self, starts, planes)
     }
 
     fn time(&self, microseconds: u64) -> f64 {
@@ -255,6 +270,11 @@ impl How<'_> {
 /// A number of the query in the precision asked for.
 fn scalar<V: Vector>(value: f64) -> V::Scalar {
     V::Scalar::from_f64(value)
+}
+
+/// Directions in the precision asked for.
+fn directions<V: Vector>(numbers: &[Numbers]) -> Vec<V> {
+    numbers.iter().map(|n| V::from_fn(|i| scalar::<V>(n[i]))).collect()
 }
 
 /// How an iteration of gjk-raycast ended.

@@ -1,12 +1,13 @@
 //! `motion_cast`.
 
 use convex_support::Vector;
+use gjk_raycast::laws::{self, Numbers, PairPlanes, Report};
 use gjk_raycast::{Body, Impact, MotionCastOptions, RigidMotion};
 
 use super::cast::{self, Limits, problem};
 use super::gradient::{self, Gradient};
 use super::pair::Bodies;
-use super::{Ask, How, Query, Question};
+use super::{Ask, How, Query, Question, directions};
 use crate::wire::answer::Answer;
 use crate::wire::error::Problem;
 use crate::wire::fields::Fields;
@@ -79,6 +80,14 @@ impl<V: Space> Question for Cast<V> {
             Some((gradient, by_motion))
         });
         format!("{derivatives:?}")
+    }
+
+    fn claims(&self, starts: &[Numbers], _: PairPlanes<'_>) -> Option<Report> {
+        let (a, b) = (
+            (&self.a as laws::AnyShape<'_, V>, self.motion_a),
+            (self.b.convex()? as laws::AnyShape<'_, V>, self.motion_b),
+        );
+        Some(laws::motion_cast_judged(a, b, self.options, &directions::<V>(starts)))
     }
 
     fn answer(&self, (cast, gradient): Self::Solution) -> Result<Answer, Problem> {

@@ -1,13 +1,14 @@
 //! `ray_cast`.
 
 use convex_support::{Point, Vector};
+use gjk_raycast::laws::{self, Numbers, PairPlanes, Report};
 use gjk_raycast::{
     CastMethod, DistanceOptions, Ray, RayCastOptions, RayHit, distance, iterative_ray_cast, ray_cast,
     ray_cast_certificate,
 };
 
 use super::cast::{self, RaySpec, problem};
-use super::{Ask, How, Query, Question, certificate, scalar};
+use super::{Ask, How, Query, Question, certificate, directions, scalar};
 use crate::wire::answer::Answer;
 use crate::wire::error::Problem;
 use crate::wire::fields::Fields;
@@ -90,6 +91,10 @@ impl<V: Space> Question for Cast<V> {
         #[cfg(not(feature = "parallel"))]
         let batch = gjk_raycast::ray_casts(&self.target, &rays, options).collect::<Vec<_>>();
         format!("{derivatives:?} {batch:?}")
+    }
+
+    fn claims(&self, starts: &[Numbers], planes: PairPlanes<'_>) -> Option<Report> {
+        Some(laws::ray_judged(&self.target, self.ray, self.options, &directions::<V>(starts), planes.a))
     }
 
     fn answer(&self, cast: Self::Solution) -> Result<Answer, Problem> {

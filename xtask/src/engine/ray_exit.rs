@@ -1,10 +1,11 @@
 //! `ray_exit`.
 
 use convex_support::Vector;
+use gjk_raycast::laws::{self, Numbers, PairPlanes, Report};
 use gjk_raycast::{Ray, RayCastOptions, RayHit, ray_exit};
 
 use super::cast::{self, RaySpec, problem};
-use super::{Ask, How, Query, Question};
+use super::{Ask, How, Query, Question, directions};
 use crate::wire::answer::Answer;
 use crate::wire::error::Problem;
 use crate::wire::fields::Fields;
@@ -42,6 +43,10 @@ impl<V: Space> Question for Exit<V> {
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
         ray_exit(&self.target, self.ray, self.options).map_err(problem)
+    }
+
+    fn claims(&self, starts: &[Numbers], planes: PairPlanes<'_>) -> Option<Report> {
+        Some(laws::ray_judged(&self.target, self.ray, self.options, &directions::<V>(starts), planes.a))
     }
 
     fn answer(&self, exit: Self::Solution) -> Result<Answer, Problem> {

@@ -1,11 +1,12 @@
 //! `signed_distance`.
 
 use convex_support::{Scalar as _, Vector};
+use gjk_raycast::laws::{self, Numbers, PairPlanes, Report};
 use gjk_raycast::{Body, SignedDistanceOptions, Status};
 
 use super::gradient::{self, Gradient};
 use super::pair::Bodies;
-use super::{Ask, How, Query, Question, status};
+use super::{Ask, How, Query, Question, directions, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
@@ -67,6 +68,10 @@ impl<V: Space> Question for Pair<V> {
             (features.gradient(), features.smoothness(), features.hessian(V::ZERO, V::ZERO))
         });
         format!("{hessian:?} {:?}", self.b.signed_distance(&self.a, self.options.with_axis(d.normal)))
+    }
+
+    fn claims(&self, starts: &[Numbers], planes: PairPlanes<'_>) -> Option<Report> {
+        Some(laws::pair_judged(&self.a, self.b.convex()?, &directions::<V>(starts), planes))
     }
 
     fn answer(&self, (d, gradient): Self::Solution) -> Result<Answer, Problem> {

@@ -22,6 +22,7 @@ use self::page::Section;
 pub use self::progress::{begin as begin_progress, end as end_progress, progress};
 use self::score::Verdict;
 use crate::EMBEDDED;
+use crate::claims;
 use crate::engine;
 use crate::mesh::Meshes;
 use crate::wire::answer::{Line, as_read};
@@ -284,7 +285,11 @@ fn validate_line(text: &[u8], object: &Result<Object, Problem>, line: u64, file:
     let outcome = question.as_ref().map_err(Clone::clone).and_then(|question| question.ask());
     let time = question.ok().filter(|_| outcome.is_ok()).map(|question| question.time(MICROSECONDS));
     let answer = as_read(Line { id: Value::Null, line, outcome });
-    let verdict = case.as_ref().map_or_else(|| score::judge_unreadable(&answer), |case| score::judge(case, &answer));
+    let mut verdict =
+        case.as_ref().map_or_else(|| score::judge_unreadable(&answer), |case| score::judge(case, &answer));
+    if let Ok(object) = object {
+        score::judge_claims(claims::of(object, &STARTS, meshes).unwrap_or_default(), &mut verdict);
+    }
     let case = case.unwrap_or_default();
     let field = |name: &str| case.get(name).and_then(Value::as_str);
     Record {
@@ -310,6 +315,9 @@ fn iterations(value: &Value) -> Option<u64> {
         number => number.as_u64(),
     }
 }
+
+/// Directions that searches are begun from, and of planes that are tried: nothing depends on them.
+const STARTS: [[f64; 3]; 2] = [[1.0, 0.0, 0.0], [0.5, -0.25, 0.125]];
 
 /// How long a question is timed: long enough to be told from the clock, short enough for thousands of questions.
 const MICROSECONDS: u64 = 100;

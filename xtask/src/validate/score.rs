@@ -1,5 +1,6 @@
 //! Whether an answer is right, as the query format defines it.
 
+use gjk_raycast::laws::{Law, Report};
 use serde_json::Value;
 
 use crate::wire::fields::Object;
@@ -62,6 +63,12 @@ impl Verdict {
         self.soft.iter().any(|why| why.starts_with("bracket") || why.starts_with("gap"))
     }
 
+    /// Whether a bracket is wide although the answer says that it has converged.
+    #[must_use]
+    pub fn is_wide(&self) -> bool {
+        self.wrong.iter().any(|why| why.starts_with(WIDE))
+    }
+
     fn wrong(why: impl Into<String>) -> Self {
         Self { wrong: vec![why.into()], ..Self::default() }
     }
@@ -118,6 +125,20 @@ pub fn judge(case: &Object, answer: &Object) -> Verdict {
     }
     judge_fields(case, expect, answer, scalar == Some("log_det"), &mut verdict);
     verdict
+}
+
+/// How the reason begins that an answer is wrong whose bracket is wide although it has converged.
+const WIDE: &str = "wide although converged";
+
+/// Counts what an answer says of itself and is not so: a bracket that is wide although the answer has converged is wrong,
+/// and other claims that are false are told beside it.
+pub fn judge_claims(report: Report, verdict: &mut Verdict) {
+    for broken in report.broken {
+        match broken.law {
+            Law::Width => verdict.wrong.push(format!("{WIDE}: {broken}")),
+            _ => verdict.soft.push(format!("claim: {broken}")),
+        }
+    }
 }
 
 /// Compares the scalar, and what certifies it.

@@ -15,6 +15,8 @@ use crate::table::{aligned, quantile};
 pub struct Group {
     pub cases: usize,
     pub wrong: usize,
+    /// Of those that are wrong, the ones that have converged to a wide bracket.
+    pub wide: usize,
     pub soft: usize,
     relative: Vec<f64>,
     ratio: Vec<f64>,
@@ -26,6 +28,7 @@ impl Group {
     fn add(&mut self, record: &Record) {
         self.cases += 1;
         self.wrong += usize::from(!record.verdict.wrong.is_empty());
+        self.wide += usize::from(record.verdict.is_wide());
         self.soft += usize::from(!record.verdict.soft.is_empty());
         self.relative.extend(record.verdict.relative);
         self.ratio.extend(record.verdict.ratio);
@@ -39,13 +42,14 @@ impl Group {
     }
 
     /// The columns of [`HEADERS`], after the name.
-    pub fn columns(&self) -> [String; 11] {
+    pub fn columns(&self) -> [String; 12] {
         let told = |value: Option<f64>, as_text: fn(f64) -> String| value.map_or_else(|| "–".to_owned(), as_text);
         let whole = |value: f64| format!("{value:.0}");
         [
             self.cases.to_string(),
             (self.cases - self.wrong).to_string(),
             self.wrong.to_string(),
+            self.wide.to_string(),
             self.soft.to_string(),
             told(quantile(&self.relative, 0.5), error),
             told(quantile(&self.relative, 0.99), error),
@@ -59,10 +63,11 @@ impl Group {
 }
 
 /// What the columns of a group are.
-pub const HEADERS: [&str; 11] = [
+pub const HEADERS: [&str; 12] = [
     "cases",
     "right",
     "wrong",
+    "wide though converged",
     "secondary errors",
     "median error",
     "99 % below",

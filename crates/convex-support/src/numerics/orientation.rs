@@ -183,7 +183,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(4096))]
+        #![proptest_config(crate::laws::config(4096))]
 
         #[test]
         fn signs_are_those_of_the_exact_determinants(p in prop_oneof![few_digits(), nearly_in_a_plane()]) {

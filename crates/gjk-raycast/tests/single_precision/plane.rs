@@ -74,6 +74,8 @@ fn shape() -> BoxedStrategy<Shape> {
 }
 
 proptest! {
+    #![proptest_config(convex_support::laws::config(256))]
+
     #[test]
     fn brackets_of_distances_hold_the_truth(pair in bodies::<DVec2>(shape), axis in vector(1.0)) {
         super::brackets_of_distances(pair, axis)?;

@@ -78,6 +78,8 @@ fn shape() -> BoxedStrategy<Shape> {
 }
 
 proptest! {
+    #![proptest_config(convex_support::laws::config(256))]
+
     #[test]
     fn brackets_of_distances_hold_the_truth(pair in bodies::<DVec3>(shape), axis in vector(1.0)) {
         super::brackets_of_distances(pair, axis)?;

@@ -1,6 +1,15 @@
 //! Fixed-seed point sets shared by the tests.
 
 use lj_ellipsoid::{Ellipsoid, Enclosing};
+use proptest::prelude::ProptestConfig;
+use proptest::test_runner::{RngSeed, contextualize_config};
+
+/// The configuration of property tests that draw the same cases in every run, as that of convex-support, unless
+/// `PROPTEST_RNG_SEED` or `PROPTEST_CASES` say otherwise.
+pub(crate) fn config(cases: u32) -> ProptestConfig {
+    let rng_seed = RngSeed::Fixed(2004_11_20);
+    contextualize_config(ProptestConfig { cases, rng_seed, ..ProptestConfig::default() })
+}
 
 /// A small generator (splitmix64), so that the sets are the same everywhere.
 pub(crate) struct Rng(pub(crate) u64);

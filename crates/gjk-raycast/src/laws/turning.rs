@@ -1,0 +1,151 @@
+//! The claims of `motion_cast` about one motion of two bodies that turn.
+
+use alloc::format;
+use alloc::vec::Vec;
+
+use convex_support::{Posed, Scalar, Vector};
+
+use super::cast::{Casts, Told};
+use super::planes::numbers;
+use super::ray::ends;
+use super::{AnyShape, Law, Report, Scale};
+use crate::{
+    Impact, Motion, MotionCastOptions, RigidMotion, SignedDistanceOptions, StartInContact, Trajectory, linear_cast,
+    motion_cast as ask, signed_distance,
+};
+
+/// The times at which the bodies are looked at.
+const LOOKS: u32 = 12;
+
+/// Casts two turning bodies with several options and starts, in both orders, and with ends at the hit and beside it,
+/// and looks at them at some times.
+pub fn motion_cast<V: Vector>(
+    a: AnyShape<'_, V>,
+    motion_a: RigidMotion<V>,
+    b: AnyShape<'_, V>,
+    motion_b: RigidMotion<V>,
+    options: MotionCastOptions<V>,
+    starts: &[V],
+) -> Report {
+    motion_cast_judged((a, motion_a), (b, motion_b), options, starts)
+}
+
+/// The same for bodies with their motions.
+pub fn motion_cast_judged<V: Vector>(
+    (a, motion_a): (AnyShape<'_, V>, RigidMotion<V>),
+    (b, motion_b): (AnyShape<'_, V>, RigidMotion<V>),
+    options: MotionCastOptions<V>,
+    starts: &[V],
+) -> Report {
+    let mut report = Report::default();
+    let mut told = Vec::new();
+    let mut cast = |how, options: MotionCastOptions<V>, is_reversed: bool| {
+        let cast =
+            if is_reversed { ask(b, motion_b, a, motion_a, options) } else { ask(a, motion_a, b, motion_b, options) }
+                .ok()?;
+        let normal = |hit: &Impact<V>| hit.normal.map(|n| if is_reversed { -n } else { n });
+        let mut one = Told::new(how, options.max_time, &cast, |hit| (hit.time, normal(hit)));
+        if is_reversed {
+            one.reverse();
+        }
+        one.tolerance = options.tolerance.as_f64();
+        told.push(one);
+        Some(cast)
+    };
+    let lean = MotionCastOptions {
+        max_time: options.max_time,
+        target_distance: options.target_distance,
+        start_in_contact: options.start_in_contact,
+        tolerance: options.tolerance,
+        ..MotionCastOptions::lean()
+    };
+    let Some(plain) = cast("by default", options, false) else { return report };
+    cast("in the other order", options, true);
+    cast("lean", lean.with_max_iterations(options.max_iterations.min(500)), false);
+    for &axis in starts.iter().take(1) {
+        cast("from an axis", options.with_axis(axis), false);
+    }
+    let hit = plain.outcome.hit();
+    for end in ends([hit.map(|hit| hit.time), None, None]) {
+        cast("to an end", options.with_max_time(end), false);
+    }
+    let still = V::AngularVelocity::default();
+    if motion_a.angular_velocity == still && motion_b.angular_velocity == still {
+        let motion = Motion { velocity_a: motion_a.velocity, velocity_b: motion_b.velocity };
+        if let Ok(cast) = linear_cast(a, b, motion, options.straight()) {
+            told.push(Told::new("as a linear cast", options.max_time, &cast, |hit: &Impact<V>| (hit.time, hit.normal)));
+        }
+    }
+
+    let scale = Scale::of(a, b);
+    let target = options.target_distance.as_f64().max(0.0);
+    let approach = |normal: super::Numbers| {
+        let hit = hit?;
+        let n = V::from_fn(|i| V::Scalar::from_f64(normal[i]));
+        Some(-n.dot(motion_a.velocity(hit.time, hit.point) - motion_b.velocity(hit.time, hit.point)).as_f64())
+    };
+    let reach = |point: V, center: V| super::planes::length(numbers(point - center));
+    let arms = hit.map_or(0.0, |hit| reach(hit.point, motion_a.center) + reach(hit.point, motion_b.center));
+    let casts = Casts {
+        query: "motion_cast",
+        unit: scale.unit() + scale.epsilon * (scale.place + arms + target),
+        size: scale.size,
+        epsilon: scale.epsilon,
+        target,
+        approach: &approach,
+        beyond: None,
+        normals: Vec::new(),
+    };
+    casts.judge(&told, &mut report);
+    if options.start_in_contact == StartInContact::Report {
+        look((a, motion_a), (b, motion_b), &told, target, &scale, &mut report);
+    }
+    report
+}
+
+/// Looks at the bodies at some times: they do not overlap before they are said to touch, and touch then.
+fn look<V: Vector>(
+    (a, motion_a): (AnyShape<'_, V>, RigidMotion<V>),
+    (b, motion_b): (AnyShape<'_, V>, RigidMotion<V>),
+    told: &[Told],
+    target: f64,
+    scale: &Scale,
+    report: &mut Report,
+) {
+    let gap = |time: f64| {
+        let time = V::Scalar::from_f64(time);
+        let [a, b] = [(a, motion_a), (b, motion_b)].map(|(shape, motion)| {
+            let displacement = motion.displacement(time);
+            let error = displacement.turn_error.as_f64()
+                * (shape.core().size() + (shape.core().origin - motion.center).norm()).as_f64()
+                + displacement.shift_error.as_f64()
+                + scale.epsilon * (shape.core().origin.norm() + displacement.shift.norm()).as_f64();
+            let body = Posed::translated(shape, V::ZERO).and_then(|body| displacement.moved(&body));
+            Some((body.ok()?, error))
+        });
+        let ((a, error_a), (b, error_b)) = a.zip(b)?;
+        let answer = signed_distance(&a, &b, SignedDistanceOptions::new());
+        let error = 8.0 * (error_a + error_b) + scale.unit();
+        Some([answer.lower.as_f64() - error, answer.upper.as_f64() + error])
+    };
+    let latest = told.iter().map(Told::latest).fold(f64::INFINITY, f64::min);
+    if latest.is_finite() {
+        let found = told.iter().find(|one| one.latest() <= latest);
+        if let Some(one) = found.filter(|one| one.bounds()[1] <= latest) {
+            let apart = gap(latest).map_or(f64::NEG_INFINITY, |gap| gap[0]);
+            report.claim((Law::Bound, "motion_cast"), apart <= target, || {
+                format!("the bodies are {apart:e} apart at the upper bound: {}", one.answer())
+            });
+        }
+    }
+    let Some(one) = told.iter().max_by(|x, y| x.earliest().total_cmp(&y.earliest())) else { return };
+    for k in 0..if one.earliest() > 0.0 { LOOKS } else { 0 } {
+        let time = one.earliest() * f64::from(k) / f64::from(LOOKS);
+        if let Some([_, upper]) = gap(time).filter(|_| time.is_finite()) {
+            let law = if one.is_miss() { Law::Certain } else { Law::Bound };
+            report.claim((law, "motion_cast"), upper >= target, || {
+                format!("the bodies are {upper:e} apart at {time:e}, before they are said to touch: {}", one.answer())
+            });
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Whether what the answers to a query say of themselves is true: the laws of gjk-raycast, with planes in intervals for
+//! a judge.
+
+use checker::{Reader, Solid};
+use gjk_raycast::laws::{Numbers, PairPlanes, Planes, Report, Term};
+use serde_json::{Value, json};
+
+use crate::engine;
+use crate::mesh::Meshes;
+use crate::validate::score;
+use crate::wire::answer::{Line, as_read};
+use crate::wire::fields::Object;
+
+/// A body whose planes are evaluated in intervals of 256 bits.
+struct Exact(Solid);
+
+impl Planes for Exact {
+    fn beyond(&self, normal: Numbers, point: &[Term]) -> [f64; 2] {
+        self.0.beyond(normal, point)
+    }
+}
+
+/// What became of the claims of a query's answers. `None` where there are no laws for it, or it cannot be asked.
+///
+/// The starts are directions to begin with, and of planes to try.
+pub fn of(query: &Object, starts: &[Numbers], meshes: &Meshes) -> Option<Report> {
+    let question = engine::question(query, meshes).ok()?;
+    let single = query.get("precision").and_then(Value::as_str) == Some("f32");
+    let mesh = |path: &str| {
+        let mesh = meshes.load(std::path::Path::new(path)).map_err(|why| why.message)?;
+        Ok(mesh.points().iter().map(|point| point.to_array()).collect())
+    };
+    let reader = Reader { single, mesh: &mesh };
+    let solid = |name: &str| Solid::read(query.get(name)?, &reader).ok();
+    let point = || Solid::read(&json!({"type": "point", "at": [0.0, 0.0, 0.0]}), &reader).ok();
+    let (a, b) = if query.contains_key("target") { (solid("target")?, point()?) } else { (solid("a")?, solid("b")?) };
+    let apart = Exact(b.minus(&a));
+    let (a, b) = (Exact(a), Exact(b));
+    question.claims(starts, PairPlanes { a: &a, b: &b, apart: &apart })
+}
+
+/// What is wrong with the answer to a query that says what is expected of it.
+pub fn expected(query: &Object, meshes: &Meshes) -> Vec<String> {
+    let Ok(question) = engine::question(query, meshes) else { return Vec::new() };
+    let answer = as_read(Line { id: Value::Null, line: 0, outcome: question.ask() });
+    let is_undecided = answer.contains_key("error");
+    if is_undecided { Vec::new() } else { score::judge(query, &answer).wrong }
+}
