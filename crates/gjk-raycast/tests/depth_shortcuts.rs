@@ -2,18 +2,23 @@
 //! of either.
 
 use crate::common::behind_pointers::signed_distance;
-use crate::common::{Plain, Random, s};
+use crate::common::{Plain, Random, quaternion, s};
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Quat, Vec3A};
 use convex_support::{
-    Affine, Ball, CoreKind, Cuboid, Ellipsoid, Matrix, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Vector,
-    closest_point,
+    Affine, Ball, Capsule, Cone, CoreKind, Cuboid, Cylinder, Ellipsoid, Matrix, Polytope, Posed, Rounded, Scalar,
+    Segment, SupportMap, Vector, Vector3, closest_point, support_value,
 };
 use gjk_raycast::{SignedDistance, SignedDistanceOptions, Status};
+use num_traits::Float;
 
 impl Random {
     /// From `least` to one, by its logarithm.
     fn length(&mut self, least: f64) -> f64 {
         self.number(least.ln(), 0.0).exp()
+    }
+
+    fn index(&mut self, below: u32) -> usize {
+        self.number(0.0, below.into()) as usize
     }
 
     fn half_extents<V: Vector>(&mut self, least: f64) -> V {
@@ -158,6 +163,91 @@ fn ties_have_points_too() {
         let other = Posed::translated(cube, at).expect("finite");
         let answer = agree(&other, &cube);
         assert_eq!((answer.signed_distance, answer.status), (at.abs().max_element() - 2.0, Status::Converged));
+    }
+}
+
+/// What an answer says of itself, as its fields document it.
+fn keeps_its_word<V: Vector>(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>) -> SignedDistance<V> {
+    let options = SignedDistanceOptions::default();
+    let answer = gjk_raycast::signed_distance(a, b, options);
+    let SignedDistance { signed_distance, lower, upper, normal, .. } = answer;
+    let cores = [a.core(), b.core()];
+    let offset = cores[0].origin - cores[1].origin;
+    let size = cores.iter().fold(offset.norm(), |sum, core| sum + core.extent + core.radius);
+    let far = size + cores[0].origin.norm() + cores[1].origin.norm();
+    let ulps = |count: f64| s::<V>(count) * V::Scalar::EPSILON;
+    assert!(lower <= signed_distance && signed_distance <= upper, "{answer:?}");
+    let error = ulps(8.0) * size + cores[0].error + cores[1].error;
+    let asked = if lower > V::Scalar::ZERO { V::Scalar::ZERO } else { options.tolerance * size };
+    let is_narrow = upper - lower <= error * s::<V>(6.0) + asked;
+    assert_eq!(answer.status == Status::Converged, is_narrow, "{answer:?}");
+    let plane = -(support_value(a, -normal) + support_value(b, normal));
+    assert!(plane >= lower - ulps(8.0) * far, "{plane:?} {answer:?}");
+    let rest = (answer.point_a - answer.point_b - normal * signed_distance).norm();
+    let lean = Float::sqrt(size * s::<V>(2.0) * (upper - lower));
+    assert!(rest <= lean + ulps(64.0) * far, "{rest:?} {answer:?}");
+    answer
+}
+
+/// Pairs of an ellipsoid that is a ball, or nearly one, or one of revolution, and another body.
+fn about_balls<V: Vector>(random: &mut Random, turn: impl Fn(&mut Random) -> V::Rotation, round: [AnyShape<V>; 2]) {
+    let ellipsoid = |random: &mut Random| {
+        let round = random.length(0.3);
+        let last = round * [1.0, 1.0, 1.0 + 1e-3 * random.length(1e-5), random.length(0.3)][random.index(4)];
+        let semi_axes = V::from_fn(|i| s::<V>(if i + 1 == V::DIM { last } else { round }));
+        Ellipsoid::new(V::ZERO, semi_axes, turn(random)).expect("positive")
+    };
+    for other in [Box::new(ellipsoid(random)) as AnyShape<V>].into_iter().chain(round) {
+        let body = ellipsoid(random);
+        let toward = random.vector::<V>(1.0).unit().unwrap_or_else(|| V::axis(0));
+        let reach = support_value(&body, toward) + support_value(&*other, -toward);
+        let share = s::<V>([random.number(0.0, 1.0), 0.0, 1.0 - random.length(1e-6)][random.index(8).min(2)]);
+        let other = Posed::new(other, turn(random), toward * (reach * share)).expect("a pose");
+        let (there, back) = (keeps_its_word(&body, &other), keeps_its_word(&other, &body));
+        assert!(there.lower <= back.upper && back.lower <= there.upper, "{there:?}\n{back:?}");
+    }
+}
+
+type AnyShape<V> = Box<dyn SupportMap<Vector = V>>;
+
+/// A look near contact was taken of the whole bodies: once the balls that roll within them are removed, it only knows
+/// that they meet.
+#[test]
+fn converged_depths_without_rolling_balls_are_narrow() {
+    fn in_space<V: Vector3>(seed: u64) {
+        let mut random = Random(seed);
+        for _ in 0..1000 {
+            let [height, radius] = [random.length(0.3), random.length(0.3)].map(s::<V>);
+            let cylinder = Cylinder::<V>::new(height, radius).expect("positive");
+            let cone = Cone::<V>::new(height, radius).expect("positive");
+            let turn = |random: &mut Random| quaternion::<V>([0.0; 4].map(|_| random.number(-1.0, 1.0)));
+            about_balls(&mut random, turn, [Box::new(cylinder), Box::new(cone)]);
+        }
+    }
+    in_space::<DVec3>(0xA076_1D64_78BD_642F);
+    in_space::<Vec3A>(0xE703_7ED1_A0B4_28DB);
+    let mut random = Random(0x8EBC_6AF0_9C88_C6E3);
+    for _ in 0..1000 {
+        let capsule = Capsule::new(random.length(0.3), random.length(0.3)).expect("positive");
+        let cuboid = Cuboid::new(random.half_extents::<DVec2>(0.3)).expect("positive");
+        about_balls(&mut random, |random| random.number(-3.0, 3.0), [Box::new(capsule), Box::new(cuboid)]);
+    }
+}
+
+/// The planes of ways out that are equally short to rounding are others' than the points'.
+#[test]
+fn tied_ways_out_have_the_points_of_their_planes() {
+    let about = |semi_axes, angle| Ellipsoid::<DVec3>::new(DVec3::ZERO, semi_axes, DQuat::from_rotation_x(angle));
+    let ball = about(DVec3::ONE, 0.5).expect("positive");
+    let apart = Posed::translated(ball, DVec3::X).expect("finite");
+    assert!((keeps_its_word(&ball, &apart).signed_distance + 1.0).abs() < 1e-14);
+    for semi_axes in [DVec3::splat(0.5), DVec3::new(0.5, 0.5, 0.75), DVec3::new(0.5, 0.75, 0.75)] {
+        for angle in [0.0, 0.5, 1.0] {
+            let _ = keeps_its_word(&about(semi_axes, angle).expect("positive"), &ball);
+            let capsule =
+                Posed::new(Capsule::new(0.5, 0.25).expect("positive"), DQuat::from_rotation_z(angle), DVec3::ZERO);
+            let _ = keeps_its_word(&about(semi_axes, angle).expect("positive"), &capsule.expect("a pose"));
+        }
     }
 }
 

@@ -177,12 +177,24 @@ fn flat_and_identical_shapes_have_an_answer() {
 
 #[test]
 fn ties_end_with_a_bracket() {
-    // Every direction is as good as any other, and no facet is of the boundary.
+    // A circle of ways out is as short, and no facet is of the boundary.
+    let [long, flat] = [DVec3::new(1.0, 1.0, 1.5), DVec3::new(1.0, 1.0, 2.0)]
+        .map(|semi_axes| Ellipsoid::new(DVec3::ZERO, semi_axes, DQuat::IDENTITY).expect(VALID));
+    let answer = ask(&long, &flat);
+    assert_eq!((answer.status, answer.iterations), (Status::IterationLimit, 500));
+    assert!(answer.lower <= -2.0 && -2.0 <= answer.upper && answer.upper < -1.999, "{answer:?}");
+    assert!((answer.signed_distance + 2.0).abs() < 1e-14, "{answer:?}");
+}
+
+/// Every direction is as good as any other, but nothing is left of a ball without the one that rolls within it.
+#[test]
+fn a_ball_given_as_an_ellipsoid_is_one() {
     let ball = Ellipsoid::new(DVec3::ZERO, DVec3::ONE, DQuat::IDENTITY).expect(VALID);
     let answer = ask(&ball, &ball);
-    assert_eq!((answer.status, answer.iterations), (Status::IterationLimit, 500));
-    assert!(answer.lower <= -2.0 && -2.0 <= answer.upper && answer.upper < -1.9, "{answer:?}");
-    assert!((answer.signed_distance + 2.0).abs() < 1e-14, "{answer:?}");
+    is(answer, -2.0, 1e-13);
+    assert!(answer.iterations < 20, "{answer:?}");
+    is(ask(&ball, &at(ball, [0.0, 1.0, 0.0])), -1.0, 1e-13);
+    is(ask(&ball, &cuboid([1.0, 1.0, 1.0])), -2.0, 1e-13);
 }
 
 #[test]

@@ -53,6 +53,11 @@ fn is_consistent<V: Vector>(a: &Shape<V>, b: &Shape<V>) -> Result<(), TestCaseEr
     // Planes that prove the lower bound may lean by this from the direction between the points.
     let lean = (size * V::Scalar::from_f64(2.0) * (answer.upper - answer.lower)).sqrt();
     prop_assert!(apart.norm() <= lean + ulps::<V::Scalar>(64.0) * size, "{apart:?} {answer:?}");
+    let SignedDistance { lower, upper, status, .. } = answer;
+    let error = ulps::<V::Scalar>(8.0) * size + a.core().error + b.core().error;
+    let asked = if lower > V::Scalar::ZERO { V::Scalar::ZERO } else { SignedDistanceOptions::<V>::new().tolerance };
+    let is_narrow = upper - lower <= error * V::Scalar::from_f64(6.0) + asked * size;
+    prop_assert!(status != Status::Converged || is_narrow, "{answer:?}");
     if answer.status == Status::Converged && !answer.overlap {
         let distance = distance(a, b, DistanceOptions::default());
         prop_assert!(distance.lower <= answer.upper + ulps::<V::Scalar>(16.0) * size, "{distance:?} {answer:?}");

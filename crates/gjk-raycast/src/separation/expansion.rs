@@ -125,8 +125,8 @@ fn expand_within<V: Vector>(
                 Closing::Again => {}
             }
         }
-        // The depth is certainly this large.
-        if inner - cores.greatest_error() > depth_limit {
+        // The depth is certainly this large, whatever the sum with the radii rounds to.
+        if inner - cores.greatest_error() - cores.noise() > depth_limit {
             is_deep = true;
             break Status::Converged;
         }

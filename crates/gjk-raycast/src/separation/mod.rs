@@ -309,15 +309,18 @@ impl<V: Vector> Separation<V> {
     fn up_to(self, cores: &Cores<'_, V>, state: &mut Gjk<V>, way: WayOut<V>) -> Self {
         let by_way = way.h + cores.error_along(way.u());
         // NaN is no bound.
-        let plane = cores.best_plane(state).filter(|&(outer, n)| outer <= by_way && self.lies_across(n, cores));
+        let known = |outer: V::Scalar| -(outer * cores.scale()) - cores.radius();
+        let plane = cores.best_plane(state);
+        let plane = plane.filter(|&(outer, n)| outer <= by_way && self.lies_across(n, known(outer), cores));
         let (outer, axis) = plane.unwrap_or((by_way, -way.u()));
         Self { outer, axis, ..self }
     }
 
-    /// Whether the points of the bodies are apart across a plane to rounding, by its axis into the difference. Of ways
-    /// out that are equally short, another plane may end another one.
-    fn lies_across(&self, axis: V, cores: &Cores<'_, V>) -> bool {
-        (self.u + axis).norm() * self.value(cores).abs() <= cores.noise() * cores.scale()
+    /// Whether the points of the bodies are apart across a plane, by its axis into the difference and the lower bound
+    /// that it proves: if it keeps the bodies apart, or else to rounding. Of ways out that are equally short, another
+    /// plane may end another one.
+    fn lies_across(&self, axis: V, lower: V::Scalar, cores: &Cores<'_, V>) -> bool {
+        lower > Scalar::ZERO || (self.u + axis).norm() * self.value(cores).abs() <= cores.noise() * cores.scale()
     }
 
     /// How far apart the bounds are.
@@ -367,7 +370,7 @@ impl<V: Vector> Separation<V> {
         match &cores.near {
             Some(near) => {
                 let by_look = near.lower * scale - lost(near.lower);
-                let is_better = by_look > lower && self.lies_across(near.normal, cores);
+                let is_better = by_look > lower && self.lies_across(near.normal, by_look, cores);
                 let (lower, axis) = if is_better { (by_look, near.normal) } else { (lower, self.axis) };
                 (lower, upper.min(near.upper * scale + lost(near.upper)), axis)
             }
