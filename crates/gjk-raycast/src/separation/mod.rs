@@ -374,7 +374,8 @@ impl<V: Vector> Separation<V> {
         let infinity = V::Scalar::infinity();
         let (lower, upper) = if is_bounded { (lower, upper) } else { (-infinity, infinity) };
         // As near to one another as a measurement near contact leaves the bounds.
-        let is_narrow = cores.near.as_ref().is_some_and(|near| upper - lower <= near.frame.error * (cores.scale() + cores.scale()));
+        let is_narrow =
+            cores.near.as_ref().is_some_and(|near| upper - lower <= near.frame.error * (cores.scale() + cores.scale()));
         let status = match self.status {
             Status::Converged if !is_bounded => Status::Stalled,
             Status::Stalled if is_bounded && is_narrow => Status::Converged,
