@@ -211,6 +211,10 @@ fn descend<B: TracedSupport>(
         if state.overlaps(frame.touching()) {
             return End::Overlap;
         }
+        // Measured, the vector of a fast step may be no shorter than one before: rounding can go on with that forever.
+        if is_nearer && state.measured && !nearing.goes_on(state.length) {
+            return End::Stalled;
+        }
         looked = next_direction.after(body, state, looked, w, reach);
     }
     End::IterationLimit

@@ -182,8 +182,9 @@ impl<V: Vector> Newton<V> {
                 }
             }
         }
-        // If the plane is as far below zero as the point is above, overlap is as likely.
-        if !(reach > -state.length) {
+        // If the plane is as far below zero as the point is above, overlap is as likely. But a vector of length `ℓ` is
+        // off by the angle `ν/ℓ`, and the plane across it low by the square of that: by more than `ν` if `ℓ² < ν`.
+        if !(reach > -state.length || state.length * state.length < self.noise) {
             return None;
         }
         let model_error = self.noise + gap * V::Scalar::from_f64(MODEL_ERROR[self.failures]);

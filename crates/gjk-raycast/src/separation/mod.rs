@@ -432,8 +432,7 @@ impl<V: Vector> Separation<V> {
         let allowed = cores.widest();
         let is_narrow = upper - lower <= allowed + wanted.tolerance.max(zero) * lower || lower > wanted.options.limit;
         // Bodies within rounding of contact touch if a second measurement that was not cut short says so.
-        let is_cut_short = self.status == Status::IterationLimit
-            || cores.near.as_ref().is_some_and(|near| near.end == End::IterationLimit);
+        let is_cut_short = self.status == Status::IterationLimit || cores.iterations >= wanted.options.max_iterations;
         let is_decided = lower > zero || upper <= zero || cores.near.is_some() && !is_cut_short;
         let status = match is_bounded && is_narrow && is_decided {
             true => Status::Converged,

@@ -78,8 +78,9 @@ impl<V: Vector> NearContact<V> {
     /// that the bodies are apart, to their error along the normal: points may be far less accurate across it, and
     /// another plane may be beyond zero.
     pub(crate) fn is_closed(&self) -> bool {
-        let error = if self.is_separated() { self.frame.error } else { self.gap - self.lower };
-        self.upper - self.gap <= error + error
+        let Self { frame: Frame { error, radius, .. }, gap, lower, upper, .. } = *self;
+        let error = if self.is_separated() { error } else { gap - lower + roundings(4.0, radius) };
+        upper - gap <= error + error
     }
 
     fn reversed(self) -> Self {
@@ -200,9 +201,10 @@ impl<V: Vector> SupportPlane<V> {
         self.certain() > radius
     }
 
-    /// Whether the plane is as far as points of the difference are, to both errors.
-    fn meets(&self, upper: V::Scalar) -> bool {
-        upper <= self.level + self.error * V::Scalar::from_f64(2.0)
+    /// Whether the plane is as far as points of the difference are, to both errors: that of a length, about the radius,
+    /// is a few roundings more.
+    fn meets(&self, upper: V::Scalar, radius: V::Scalar) -> bool {
+        upper <= self.level + (self.error + roundings(4.0, radius)) * V::Scalar::from_f64(2.0)
     }
 }
 
@@ -272,7 +274,7 @@ impl<V: Vector> Known<V> {
         let v = pair.vector_between(points, self.frame.offset);
         let plane = self.plane(pair, v)?;
         let upper = self.length_between(points);
-        if !(plane.meets(upper) && plane.level > self.frame.radius) {
+        if !(plane.meets(upper, self.frame.radius) && plane.level > self.frame.radius) {
             return None;
         }
         let mut best = plane;
@@ -311,8 +313,9 @@ impl<V: Vector> Known<V> {
             near_contact_at(frame, found, (end, state.iterations), (state.simplex.weighted_witness(), state.length))
         };
         let before = self.best_plane(pair, &state);
-        let is_settled =
-            |(plane, upper): &(SupportPlane<V>, V::Scalar)| plane.meets(*upper) && plane.is_beyond(self.frame.radius);
+        let is_settled = |(plane, upper): &(SupportPlane<V>, V::Scalar)| {
+            plane.meets(*upper, self.frame.radius) && plane.is_beyond(self.frame.radius)
+        };
         if before.as_ref().is_some_and(is_settled) {
             return before.map(|found| seen(&state, End::Separated, found));
         }
@@ -367,7 +370,8 @@ impl<V: Vector> Known<V> {
                 if !is_of_face {
                     upper = upper.min(*length.get_or_insert_with(|| self.length(state)));
                 }
-                let is_closed = is_of_face || plane.meets(upper) && plane.is_beyond(self.frame.radius);
+                let is_closed =
+                    is_of_face || plane.meets(upper, self.frame.radius) && plane.is_beyond(self.frame.radius);
                 best = Some(plane);
                 if is_closed {
                     break;
