@@ -62,6 +62,9 @@ pub fn iterative_ray_cast_with<V: Vector>(
     mut observer: impl FnMut(Iterate<'_, V>),
 ) -> Result<RayCast<V>, RayCastError> {
     ray.check(&options)?;
+    if options.is_empty() {
+        return Ok(RayCast::missed(ray.direction));
+    }
     let mut closest_point = |x| closest_point(x).ok_or(RayCastError::NoClosestPoint);
     let origin = closest_point(ray.source)?;
     if !origin.is_finite() {
@@ -267,13 +270,10 @@ impl<'o, V: Vector> Travelled<'o, V> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         let (lower, is_at_start) = (self.lower(), self.mu <= self.begin);
         let lambda = if is_at_start { self.least } else { self.local.lambda(self.crossing).max(self.least) };
-        if lambda > self.options.max_lambda {
-            let outcome = self.miss(self.along.or(self.normal).unwrap_or(-self.local.line.direction));
-            return RayCast::without_upper(outcome, lower, Status::Converged, iterations);
-        }
         let point = if lambda > zero { self.at(self.crossing) } else { self.ray.source };
-        let outcome = Outcome::Hit(RayHit { lambda, point, normal: self.normal });
-        let (lower, upper) = (lower.min(lambda), upper.max(lambda));
+        let mut outcome = Outcome::Hit(RayHit { lambda, point, normal: self.normal });
+        let upper = outcome.until(self.options.max_lambda, upper.max(lambda), |hit| hit.lambda);
+        let lower = lower.min(lambda);
         let is_exhausted = iterations >= self.options.max_iterations;
         let status = if is_exhausted { Status::IterationLimit } else { Status::Stalled };
         let status = if upper < infinity { Status::Converged } else { status };

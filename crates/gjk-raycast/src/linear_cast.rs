@@ -193,10 +193,6 @@ fn answer<V: Vector>(
     };
     let &ObstacleCast { lower, upper, status, iterations, .. } = cast;
     let mut answer = LinearCast { outcome, lower, upper, status, iterations };
-    if motion.velocity_a == motion.velocity_b && answer.upper > zero {
-        // What rests does not come to where a ray from its start would be.
-        answer.upper = V::Scalar::infinity();
-    }
     let start = StartingPair { a, b, target };
     // Where only deeper motions count, what is known of the start is looked for below.
     if let Outcome::Hit(Impact { time, normal: None, .. }) = answer.outcome

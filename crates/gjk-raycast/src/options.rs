@@ -228,8 +228,9 @@ pub struct RayCastOptions<V: Vector> {
     /// The beginning of the ray, in units of its direction; it belongs to the ray. Points of the target before it do
     /// not count, so that a ray can start on a surface and leave it. A negative value is taken for zero. Default: 0.
     pub min_lambda: V::Scalar,
-    /// The end of the ray, in units of its direction; the end belongs to the ray. If it is before the beginning, the
-    /// ray has no points, and the answer is a miss. Default: infinity.
+    /// The end of the ray, in units of its direction; the end belongs to the ray. If the ray ends where it enters the
+    /// target, to rounding, neither a hit nor a miss is certain. If the end is before the beginning, or the
+    /// beginning is infinite, the ray has no points, and the answer is a miss. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_lambda: V::Scalar,
     /// How far along the ray the hit may stay uncertain, relative to the size of the target. A bracket at the level of
@@ -276,6 +277,12 @@ impl<V: Vector> RayCastOptions<V> {
         }
     }
 
+    /// Whether the ray has no points: it ends before it begins, or begins at infinity.
+    pub(crate) fn is_empty(&self) -> bool {
+        let begin = self.min_lambda.max(V::Scalar::ZERO);
+        !(begin <= self.max_lambda && begin < V::Scalar::infinity())
+    }
+
     setters! {
         with_min_lambda(min_lambda: V::Scalar), with_max_lambda(max_lambda: V::Scalar),
         with_tolerance(tolerance: V::Scalar), with_max_iterations(max_iterations: usize),
@@ -291,8 +298,9 @@ impl<V: Vector> RayCastOptions<V> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct LinearCastOptions<V: Vector> {
-    /// The end of the motion; it belongs to the motion. If it is negative, the motion has no time, and the answer is a
-    /// miss. Default: infinity.
+    /// The end of the motion; it belongs to the motion. If the motion ends at the first contact, to rounding, neither a
+    /// hit nor a miss is certain. If it is negative, the motion has no time, and the answer is a miss. Default:
+    /// infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_time: V::Scalar,
     /// The distance at which the shapes count as touching: the cast stops that far from contact. A negative value is

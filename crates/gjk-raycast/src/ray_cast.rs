@@ -1,5 +1,6 @@
 //! Where a ray enters a shape: the paper's question, answered by a closed form, by a portal or by its Algorithm 3.
 
+use convex_support::numerics::bound::roundings;
 use convex_support::{LineQuery, Point, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
@@ -149,38 +150,50 @@ fn late<V: Vector>(
     options: RayCastOptions<V>,
     observer: &mut Observer<'_, V>,
 ) -> RayCast<V> {
-    let (zero, begin) = (V::Scalar::ZERO, options.min_lambda);
+    let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+    let (begin, end) = (options.min_lambda, options.max_lambda);
+    if options.is_empty() {
+        return RayCast::missed(ray.direction);
+    }
     let Measures { origin, radius, extent, .. } = body.measures();
     let size = extent + radius;
     let whole = LocalRay::new(ray, origin, power_of_two_near(size.max((ray.source - origin).norm())));
     let error = whole.error(whole.mu(begin), zero);
-    let slack = if begin <= options.max_lambda { error + error } else { zero };
+    let slack = error + error;
+    if !(begin + slack < infinity) {
+        // Numbers are out of range.
+        return RayCast::without_upper(Outcome::Undecided, begin, Status::Stalled, 0);
+    }
     let mut from = |begin| {
-        let wanted = options.with_max_lambda(options.max_lambda - begin);
+        // To a slack behind the end, so that a ray that ends before that misses.
+        let rest = end - begin + slack;
+        let wanted = options.with_max_lambda(rest + roundings(2.0, rest));
         answer(cast(body, CastRay::of(ray, Part::From(begin)), &wanted, observer), ray)
     };
     let early = from(begin - slack);
-    match early.outcome {
+    let mut answer = match early.outcome {
         Outcome::Hit(hit) if hit.lambda <= slack + slack => {
             let behind = from(begin + slack);
             let upper =
                 if early.upper <= zero && behind.upper <= zero { begin } else { begin + slack + behind.upper + error };
-            let hit = RayHit { lambda: begin, point: ray.at(begin), normal: None };
-            let (outcome, iterations) = (Outcome::Hit(hit), early.iterations + behind.iterations);
-            let status = Status::Converged.of(&outcome, upper < V::Scalar::infinity());
-            RayCast { outcome, lower: begin, upper, status, iterations }
+            let outcome = Outcome::Hit(RayHit { lambda: begin, point: ray.at(begin), normal: None });
+            let iterations = early.iterations + behind.iterations;
+            RayCast { outcome, lower: begin, upper, status: Status::Converged, iterations }
         }
         _ => {
             let (mut answer, start) = (early, begin - slack);
             if let Outcome::Hit(hit) = &mut answer.outcome {
-                hit.lambda = (start + hit.lambda).max(begin).min(options.max_lambda);
+                hit.lambda = (start + hit.lambda).max(begin);
                 hit.point = ray.at(hit.lambda);
             }
             answer.lower = (start + answer.lower - error).max(begin);
             answer.upper = start + answer.upper + error;
             answer
         }
-    }
+    };
+    answer.upper = answer.outcome.until(end, answer.upper, |hit| hit.lambda);
+    answer.status = answer.status.of(&answer.outcome, answer.upper < infinity);
+    answer
 }
 
 #[inline(always)]

@@ -211,9 +211,9 @@ compiled_once! {
                     let [lower, upper] = [lines.bounds[0][line], lines.bounds[1][line]];
                     let (lambda, is_missed) = (lines.entry[line], lines.known[line] < zero);
                     // As `certain` of one ray.
-                    let is_after_end = !(lambda <= end);
-                    let begin = if is_after_end { end } else { zero };
-                    let is_certain = is_missed | ((lower > begin) & (upper < infinity));
+                    let is_after_end = lower > end;
+                    let enters = (lower > zero) & (upper <= end);
+                    let is_certain = is_missed | ((enters | is_after_end) & (upper < infinity));
                     lines.known[line] = if is_certain { lines.known[line] } else { zero };
                     let is_hit = !(is_missed | is_after_end);
                     let of_hit = |x: V::Scalar, else_: V::Scalar| if is_hit { x } else { else_ };

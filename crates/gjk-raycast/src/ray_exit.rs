@@ -42,7 +42,7 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
     let (begin, end) = (options.min_lambda.max(Scalar::ZERO), options.max_lambda);
     let infinity = <S::Vector as Vector>::Scalar::infinity();
     let Outcome::Hit(hit) = exit.outcome else { return Ok(exit) };
-    if exit.upper < begin || end < begin {
+    if exit.upper < begin || options.is_empty() {
         return Ok(
             RayExit { outcome: Outcome::Miss(Miss { axis: hit.normal.unwrap_or(ray.direction) }), ..exit }.missed()
         );
@@ -55,8 +55,7 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
             Outcome::Hit(_) => {
                 let outcome = Outcome::Hit(RayHit { lambda: end, point: ray.at(end), normal: None });
                 // It is in the shape from where it enters for certain to where it leaves at the earliest.
-                let is_known = entry.upper <= end || exit.lower <= end;
-                let lower = if is_known { end.min(exit.lower) } else { -infinity };
+                let lower = if entry.is_certain() { end.min(exit.lower) } else { -infinity };
                 RayExit { outcome, lower, upper: end, status: Status::Converged, ..exit }.on_ray(begin)
             }
             Outcome::Miss(miss) => RayExit { outcome: Outcome::Miss(miss), status: entry.status, ..exit }.missed(),
@@ -84,12 +83,18 @@ compiled_once! {
         let cast = cast(body, CastRay::of(ray, Part::Reversed), &wanted, &mut Observer::none());
         let forward = LocalRay::new(ray, origin, cast.scale);
         let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
-        let (lower, upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);
-        let outcome = cast.outcome.map(|CastHit { lambda, normal, .. }| {
+        let (mut lower, mut upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);
+        let mut outcome = cast.outcome.map(|CastHit { lambda, normal, .. }| {
             let lambda = reverse(lambda);
             RayHit { lambda, point: ray.at(lambda), normal }
         });
-        let answer = RayExit { outcome, lower, upper, status: cast.status, iterations: cast.iterations };
+        outcome.until(infinity, upper, |hit| hit.lambda);
+        if !(lower <= upper) {
+            // Numbers are out of range.
+            (lower, upper) = (-infinity, infinity);
+        }
+        let status = cast.status.of(&outcome, lower > -infinity);
+        let answer = RayExit { outcome, lower, upper, status, iterations: cast.iterations };
         if outcome.is_miss() { answer.missed() } else { answer }
     }
 }

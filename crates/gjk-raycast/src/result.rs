@@ -22,8 +22,7 @@ pub enum Status {
 impl Status {
     /// The status of an outcome: a search that converged to a hit without an upper bound has stalled.
     pub(crate) fn of<H, V>(self, outcome: &Outcome<H, V>, is_bounded: bool) -> Self {
-        let is_open = outcome.is_hit() && !is_bounded;
-        if is_open && self == Self::Converged { Self::Stalled } else { self }
+        if !outcome.is_certain(is_bounded) && self == Self::Converged { Self::Stalled } else { self }
     }
 }
 
@@ -195,6 +194,19 @@ impl<H, V> Outcome<H, V> {
         }
     }
 
+    /// Ends a cast of which no plane proves that it ends before the hit, and returns the upper bound that is left. Where
+    /// the hit may be after the end, by rounding, it has none, so that neither a hit nor a miss is certain; and where
+    /// the `time` of the hit is after the end, or no number, it is no hit.
+    pub(crate) fn until<S: Scalar>(&mut self, end: S, upper: S, time: impl FnOnce(&H) -> S) -> S {
+        if let Self::Hit(hit) = self {
+            let time = time(hit);
+            if !(time <= end && time.is_finite()) {
+                *self = Self::Undecided;
+            }
+        }
+        if upper <= end { upper } else { S::infinity() }
+    }
+
     /// Whether neither a hit nor a miss is certain.
     #[must_use]
     pub const fn is_undecided(&self) -> bool {
@@ -244,13 +256,14 @@ pub struct Cast<H, V: Vector> {
     /// the normal of the last separating plane.
     pub outcome: Outcome<H, V>,
     /// The bodies, or the ray and its target, have no point in common before this time. For a miss it is infinite, or
-    /// the end of a motion that turns, unless only rounding decides whether the cast ends before a hit. If bodies may
-    /// [begin in contact](crate::StartInContact::IfDeeper), no hit in that sense happens before.
+    /// the end of a motion that turns. If bodies may [begin in contact](crate::StartInContact::IfDeeper), no hit in that
+    /// sense happens before.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// They have a point in common at this time. It need not be the first, if bodies without an inside have passed
-    /// through one another in between. It is infinite if no such time is known: for a miss, and for a hit that may be a
-    /// miss, since the bodies graze each other, or touch at the start, within rounding. Bodies that may [begin in
+    /// They have a point in common at this time, which is not after the end of the cast. It need not be the first, if
+    /// bodies without an inside have passed through one another in between. It is infinite if no such time is known: for
+    /// a miss, and for a hit that may be a miss, since the bodies graze each other, touch at the start, or first touch
+    /// at the end, within rounding. Bodies that may [begin in
     /// contact](crate::StartInContact::IfDeeper) have got deeper, or touched again, by then.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
@@ -275,6 +288,12 @@ impl<H, V: Vector> Cast<H, V> {
 }
 
 impl<V: Vector> RayCast<V> {
+    /// Of a ray without points, which any plane separates from the shape.
+    pub(crate) fn missed(axis: V) -> Self {
+        let axis = axis.unit().unwrap_or_else(|| V::axis(0));
+        Self::without_upper(Outcome::Miss(Miss { axis }), V::Scalar::infinity(), Status::Converged, 0)
+    }
+
     /// The warm start for the [cast of the next frame](crate::RayCastOptions::warm_start), from this answer and its own
     /// warm start.
     #[must_use]

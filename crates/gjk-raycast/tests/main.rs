@@ -10,6 +10,7 @@ mod boxes;
 mod brackets;
 mod cast_derivatives;
 mod cast_methods;
+mod certain_casts;
 mod certificate_points;
 mod certificates;
 mod closed_forms;

@@ -93,13 +93,14 @@ fn casts_refuse_options_of_nan() {
     }
 }
 
-/// What ends before it begins has no first point, even where the bodies overlap all along.
+/// What ends before it begins, or begins at infinity, has no first point, even where the bodies overlap all along.
 #[test]
 fn a_cast_without_time_is_a_miss() {
     for options in [
         RayCastOptions::new().with_max_lambda(-1.0),
         RayCastOptions::new().with_min_lambda(5.0).with_max_lambda(4.5),
         RayCastOptions::new().with_max_lambda(f64::NEG_INFINITY),
+        RayCastOptions::new().with_min_lambda(f64::INFINITY),
     ] {
         for target in [block(0.0), block(5.0)] {
             assert!(ray_cast(&target, ALONG, options).is_ok_and(|cast| cast.outcome.is_miss()), "{options:?}");

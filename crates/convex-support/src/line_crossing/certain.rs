@@ -208,6 +208,10 @@ impl<V: Vector> NearLine<V> {
             (V::Scalar::ZERO, seen, is_near)
         };
         let rounding = V::Scalar::EPSILON * (size * number(OF_SIZE) + sum_of_coordinates(source) * number(OF_DISTANCE));
+        // Before what the difference from the origin lost is added to it, the foot may be that long, and its rounding
+        // is `u` of that.
+        let far = V::Scalar::EPSILON * V::Scalar::EPSILON * sum_of_coordinates(seen);
+        let rounding = if FAR { rounding + far } else { rounding };
         (Self { base, source, direction, size, error: error + rounding }, is_near)
     }
 

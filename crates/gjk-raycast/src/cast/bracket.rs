@@ -66,7 +66,7 @@ pub(super) struct Bracket<'a, V: Vector> {
     pub(super) radius: V::Scalar,
     /// The radius of a ball that rolls within all of the body.
     pub(super) rolling_radius: V::Scalar,
-    /// How far rounding moves the points that the searches compare; a search ends at this width.
+    /// How far rounding moves the points that the searches compare, or the line; a search ends at this width.
     pub(super) noise: V::Scalar,
     /// A bound on the error of a plane or a point.
     ///
@@ -131,7 +131,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
         let (radius, size) = (radius * per_unit, size * per_unit);
         let body_error = body_error * per_unit + lost_to_underflow(scale);
         let ray = LocalRay::new(ray, origin, scale).part(part);
-        let noise = if size > zero { number(NOISE) * V::Scalar::EPSILON * size } else { body_error };
+        let noise = number(NOISE) * V::Scalar::EPSILON * size + ray.lost;
+        let noise = if size > zero { noise } else { noise + body_error };
         let turned = if direction_error > zero { direction_error * (ray.start.abs() + size + size) } else { zero };
         let error = number(1.5) * noise + body_error + turned;
         let reach = size + error + error;
@@ -493,7 +494,9 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// infinite where the ray is not known to be in the body anywhere, as where it grazes it.
     pub(super) fn bounds(&self, contact: Option<V::Scalar>) -> (V::Scalar, V::Scalar) {
         let widened = |bound: Bound<_>| self.ray.error(bound.at, self.certain(bound));
-        let lower = (self.ray.lambda(self.low()) - widened(self.low.bound)).max(Scalar::ZERO);
+        // A λ that overflows, or is NaN, bounds nothing.
+        let lower = self.ray.lambda(self.low()) - widened(self.low.bound);
+        let lower = if lower < V::Scalar::infinity() { lower.max(Scalar::ZERO) } else { Scalar::ZERO };
         let upper = self.ray.lambda(self.high.at) + self.ray.error(self.high.at, self.delay());
         match contact {
             // NaN bounds nothing.

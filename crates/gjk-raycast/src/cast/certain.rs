@@ -3,7 +3,7 @@
 use convex_support::numerics::bound::roundings;
 use convex_support::numerics::range::comfortable_unit_of_length;
 use convex_support::{CertainCrossing, LineQuery, Scalar, Vector};
-use num_traits::Float as _;
+use num_traits::Float;
 
 use super::bracket::Bracket;
 use super::line::Line;
@@ -41,11 +41,11 @@ pub(crate) fn certain<V: Vector>(
         }
         CertainCrossing::Enters { entry, bounds, normal } => {
             let [earliest, latest] = bounds;
-            let is_after_end = !(entry <= options.max_lambda);
+            let is_after_end = earliest > options.max_lambda;
             // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN and
             // infinity decide nothing.
-            let begin = if is_after_end { options.max_lambda } else { zero };
-            if !(earliest > begin && latest < infinity) {
+            let is_hit = (earliest > zero) & (latest <= options.max_lambda);
+            if !((is_hit | is_after_end) & (latest < infinity)) {
                 return None;
             }
             if is_after_end {
@@ -81,7 +81,11 @@ pub(crate) fn certain_closely<B: CastBody + ?Sized>(
     // For a ray that begins inside, plain numbers give the entry of its line, and twice the precision takes longer than
     // a search. In a loop, so that the inlined code is there only once.
     let known = [false, true].into_iter().find_map(|is_close| body.certain_crossing(LineQuery { is_close, ..line }));
-    let answer = certain(known?, ray, options)?;
+    // Where only rounding decides whether the ray ends before it enters, it enters where a longer one does.
+    let longer = || certain(known?, ray, &RayCastOptions { max_lambda: Float::infinity(), ..*options });
+    let mut answer = certain(known?, ray, options).or_else(longer)?;
+    answer.upper = answer.outcome.until(options.max_lambda, answer.upper, |hit| hit.lambda);
+    answer.status = answer.status.of(&answer.outcome, answer.upper < Float::infinity());
     show(&answer, body, ray, observer);
     Some(answer)
 }

@@ -25,6 +25,15 @@ impl<V: Vector> Line<V> {
     }
 }
 
+/// A bound on how far rounding moves the foot of a line, besides roundings of its own length, in units of ε² times the
+/// distance `D` of the source.
+///
+/// With `u = ε/2`, the [foot](foot_from) is found up to `8uD` along the line from where it should be, so that the
+/// fused multiply-add and the sum with what the difference lost round to `u` of that much each, `17u²D` in all. When it
+/// is moved back by that, the direction is wrong by `u` across itself, and the product and the difference lose another
+/// `24u²D`.
+const OF_DISTANCE: f64 = 16.0;
+
 /// A length in the unit of a body that is larger than its size, which is between one and two of them, or four where the
 /// unit is as large as it can be.
 const BEYOND: f64 = 8.0;
@@ -62,6 +71,8 @@ pub(crate) struct LocalRay<V: Vector> {
     pub(crate) line: Line<V>,
     /// Where the source is on the line.
     pub(crate) start: V::Scalar,
+    /// A bound on how far the line is from the true one, besides what is relative to the length of its foot.
+    pub(crate) lost: V::Scalar,
     /// One unit of μ, in units of λ.
     per_unit: V::Scalar,
 }
@@ -84,7 +95,9 @@ impl<V: Vector> LocalRay<V> {
         let (t, foot) = foot_from(origin * down, ray.source * down, exact);
         let rest = foot.dot(direction);
         let foot = foot - direction * rest;
-        Self { line: Line { foot, direction }, start: -(t * length - rest), per_unit: scale * per_length * to_near_one }
+        let start = -(t * length - rest);
+        let lost = start.abs() * (V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(OF_DISTANCE));
+        Self { line: Line { foot, direction }, start, lost, per_unit: scale * per_length * to_near_one }
     }
 
     #[inline(always)]
@@ -95,19 +108,24 @@ impl<V: Vector> LocalRay<V> {
             Part::From(lambda) => Self { start: self.mu(lambda), ..self },
             Part::Reversed => {
                 let line = Line { foot, direction: -direction };
-                Self { line, start: V::Scalar::from_f64(-BEYOND), ..self }
+                Self { line, start: -self.beyond(), ..self }
             }
         }
     }
 
+    /// A length beyond the body, which is as much farther along the line than its foot as rounding has moved that.
+    fn beyond(&self) -> V::Scalar {
+        V::Scalar::from_f64(BEYOND) + self.lost * V::Scalar::from_f64(BEYOND)
+    }
+
     /// The parameter λ of the ray where that of the [reversed](Part::Reversed) one is `lambda`.
     pub(crate) fn reverse(&self, lambda: V::Scalar) -> V::Scalar {
-        (V::Scalar::from_f64(BEYOND) - self.start) * self.per_unit - lambda
+        (self.beyond() - self.start) * self.per_unit - lambda
     }
 
     /// A bound on the rounding of [`reverse`](Self::reverse).
     pub(crate) fn error_of_reverse(&self) -> V::Scalar {
-        self.error(V::Scalar::from_f64(BEYOND), V::Scalar::ZERO)
+        self.error(self.beyond(), V::Scalar::ZERO)
     }
 
     /// The parameter λ of the ray at `μ` on the line.

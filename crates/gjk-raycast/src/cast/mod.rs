@@ -174,25 +174,18 @@ pub(crate) struct CastHit<V: Vector> {
 #[inline(always)]
 fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, Stop<V>>) -> ObstacleCast<V> {
     let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
-    let ray = bracket.ray;
-    let (outcome, (lower, upper), status) = match found {
+    let (ray, max_lambda) = (bracket.ray, bracket.options.max_lambda);
+    let (mut outcome, (lower, upper), status) = match found {
         Ok(RayContact { mu, normal, witness }) => {
             let starts_inside = mu <= ray.start;
             let lambda = if starts_inside { zero } else { ray.lambda(mu).max(zero) };
             let (lower, upper) = bracket.bounds(Some(lambda));
-            let max_lambda = bracket.options.max_lambda;
-            // The returned λ decides whether a hit at the very end of the ray counts.
-            if !(lambda > max_lambda) && lambda < infinity {
+            if lower > max_lambda {
+                let axis = normal.unwrap_or(-ray.line.direction);
+                (Outcome::Miss(Miss { axis }), (infinity, infinity), Status::Converged)
+            } else {
                 let hit = CastHit { lambda, normal, spot: ray.line.at(mu), witness };
                 (Outcome::Hit(hit), (lower, upper), Status::Converged)
-            } else if lower > max_lambda || upper < infinity {
-                let axis = normal.unwrap_or(-ray.line.direction);
-                let lower = if lower > max_lambda { infinity } else { lower };
-                (Outcome::Miss(Miss { axis }), (lower, infinity), Status::Converged)
-            } else {
-                // If there may be a hit anywhere, or none, there may be one before the end; and a λ that overflows is
-                // no number.
-                (Outcome::Undecided, (if lower < infinity { lower } else { zero }, infinity), Status::Stalled)
             }
         }
         Err(Stop::Miss(n)) => {
@@ -203,6 +196,9 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
             (Outcome::Undecided, bracket.bounds(None), status)
         }
     };
+    let upper = outcome.until(max_lambda, upper, |hit| hit.lambda);
+    // Whether a hit has an upper bound may be measured again.
+    let status = status.of(&outcome, true);
     let (iterations, scale) = (bracket.iterations, bracket.scale);
     ObstacleCast { outcome, lower, upper, status, iterations, scale }
 }

@@ -71,17 +71,15 @@ pub(super) fn settle<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodies<'_
         let (lambda, lower) = (at(near.gap), at(near.lower));
         let lower = lower - roundings(8.0, lower);
         let entry = entry([&a, b], direction, closing, &near, looks);
-        // The returned λ decides whether a hit at the very end of the ray counts.
-        if lambda > options.max_lambda {
+        if lower > options.max_lambda {
             cast.miss(axis);
-            if lower <= options.max_lambda {
-                cast.lower = lower;
-            }
         } else {
             cast.enter(lambda, axis, lower, entry, spot);
         }
     }
     cast.iterations += looks.iterations;
+    cast.upper = cast.outcome.until(options.max_lambda, cast.upper, |hit| hit.lambda);
+    cast.status = cast.status.of(&cast.outcome, true);
 }
 
 /// The place of the source relative to the target's origin, the closest points of both, and the unit of these

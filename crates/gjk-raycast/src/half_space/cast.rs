@@ -2,7 +2,7 @@
 
 use convex_support::numerics::bound::roundings;
 use convex_support::{Scalar, SupportMap, Vector};
-use num_traits::Float as _;
+use num_traits::Float;
 
 use super::HalfSpace;
 use super::plane::{Lowest, Plane};
@@ -24,6 +24,9 @@ impl<V: Vector> HalfSpace<V> {
         ray.check(&options)?;
         let zero = V::Scalar::ZERO;
         let plane = self.plane();
+        if options.is_empty() {
+            return Ok(RayCast::missed(plane.unit));
+        }
         let begin = options.min_lambda.max(zero);
         let (height, sinking) = if begin > zero {
             let way = ray.direction * begin;
@@ -33,12 +36,16 @@ impl<V: Vector> HalfSpace<V> {
         } else {
             (plane.height([ray.source], zero, zero), plane.sinking([ray.direction]))
         };
+        let rest = options.max_lambda - begin;
         let Cast { outcome, lower, upper, status, iterations } =
-            plane.crossing(height, sinking, options.max_lambda - begin);
+            plane.crossing(height, sinking, rest + roundings(1.0, rest));
         // The rounding of the sums.
-        let from_source = |lambda, count| begin + lambda + roundings(count, begin + lambda);
+        let from_source = |lambda, count| {
+            let sum: V::Scalar = begin + lambda;
+            if sum.is_finite() { sum + roundings(count, sum) } else { lambda }
+        };
         let is_at_once = begin <= zero;
-        let outcome = outcome.map(|time| {
+        let mut outcome = outcome.map(|time| {
             let lambda = if is_at_once { time } else { begin + time };
             let point = if lambda > zero { ray.at(lambda) } else { ray.source };
             RayHit { lambda, point, normal: (time > zero).then_some(plane.unit) }
@@ -50,6 +57,8 @@ impl<V: Vector> HalfSpace<V> {
         } else {
             (from_source(lower, -4.0).max(begin), from_source(upper, 4.0))
         };
+        let upper = outcome.until(options.max_lambda, upper, |hit| hit.lambda);
+        let status = status.of(&outcome, upper < Float::infinity());
         Ok(RayCast { outcome, lower, upper, status, iterations })
     }
 
@@ -98,7 +107,8 @@ impl<V: Vector> Plane<V> {
         let miss = |lower| Cast::without_upper(Outcome::Miss(Miss { axis: self.unit }), lower, Status::Converged, 0);
         let undecided = |lower| Cast::without_upper(Outcome::Undecided, lower, Status::Stalled, 0);
         let hit = |time, lower, upper| {
-            let outcome = Outcome::Hit(time);
+            let mut outcome = Outcome::Hit(time);
+            let upper = outcome.until(end, upper, |&time| time);
             let status = Status::Converged.of(&outcome, upper < infinity);
             Cast { outcome, lower, upper, status, iterations: 0 }
         };
@@ -121,7 +131,7 @@ impl<V: Vector> Plane<V> {
         if !(sinking.most() > zero) {
             return miss(infinity);
         }
-        let earliest = height.least() / sinking.most();
+        let earliest = (height.least() / sinking.most()).min(V::Scalar::max_value());
         let lower = earliest - roundings(2.0, earliest);
         if lower > end {
             return miss(infinity);
@@ -129,11 +139,6 @@ impl<V: Vector> Plane<V> {
         if !(sinking.least() > zero) {
             return undecided(lower);
         }
-        // Whether a hit at the very end counts is decided by the returned time.
-        let time = height.value / sinking.value;
-        if !(time <= end) {
-            return miss(lower);
-        }
-        hit(time, lower, latest(height.most()))
+        hit(height.value / sinking.value, lower, latest(height.most()))
     }
 }

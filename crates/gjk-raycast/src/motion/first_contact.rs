@@ -327,7 +327,7 @@ impl<'p, V: Vector> Search<'p, V> {
     fn answer(&self, end: MotionEnd<V>) -> MotionCast<V> {
         let Instant { time: near, point, normal, .. } = self.near;
         let mut lower = self.lower();
-        let (outcome, status) = match end {
+        let (mut outcome, status) = match end {
             MotionEnd::Miss(axis) => {
                 lower = near;
                 (Outcome::Miss(Miss { axis }), Status::Converged)
@@ -345,7 +345,8 @@ impl<'p, V: Vector> Search<'p, V> {
                 (Outcome::Hit(Impact { time, point, normal }), Status::Converged)
             }
         };
-        let (upper, iterations) = (self.upper, self.bodies.iterations());
+        let upper = outcome.until(self.options.max_time, self.upper, |hit| hit.time);
+        let iterations = self.bodies.iterations();
         let status = status.of(&outcome, upper < V::Scalar::infinity());
         MotionCast { outcome, lower, upper, status, iterations }
     }
