@@ -16,6 +16,7 @@ use workloads::rng::Rng;
 use crate::draw::{KINDS, query};
 use crate::engine;
 use crate::mesh::Meshes;
+use crate::output;
 use crate::wire::json;
 
 /// Where the hashes of [`COUNTS`] questions each are kept.
@@ -53,10 +54,7 @@ struct Row {
 #[must_use]
 pub fn run(choice: &Choice) -> ExitCode {
     let outcome = if choice.answers { print(choice.count) } else { compare(choice) };
-    outcome.unwrap_or_else(|why| {
-        let _ = writeln!(io::stderr(), "error: {why}");
-        ExitCode::from(2)
-    })
+    outcome.unwrap_or_else(|why| output::failed("cannot read or write", &why))
 }
 
 fn print(count: u64) -> io::Result<ExitCode> {

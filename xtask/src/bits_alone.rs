@@ -6,6 +6,7 @@ mod bits;
 mod draw;
 mod engine;
 mod mesh;
+mod output;
 mod wire;
 
 use std::process::ExitCode;

@@ -30,12 +30,13 @@ pub fn run(choice: &Choice) -> ExitCode {
     let mut groups = BTreeMap::<String, Vec<EdgeReport>>::new();
     let mut picture = choice.picture.as_deref();
     let read = choice.files.iter().try_for_each(|file| read(file, &mut groups, &mut picture));
-    match read.and_then(|()| print(&groups, &mut io::stdout().lock()).map_err(|why| why.to_string())) {
+    if let Err(why) = read {
+        let _ = writeln!(io::stderr(), "error: {why}");
+        return ExitCode::from(2);
+    }
+    match print(&groups, &mut io::stdout().lock()) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: {why}");
-            ExitCode::from(2)
-        }
+        Err(why) => crate::output::failed("cannot write the table", &why),
     }
 }
 

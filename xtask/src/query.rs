@@ -7,10 +7,10 @@ use std::process::ExitCode;
 
 use clap::Args;
 use rayon::prelude::*;
-use serde_json::Value;
 
 use crate::engine;
 use crate::mesh::{Access, Meshes};
+use crate::output;
 use crate::wire::answer::{Answer, Line};
 use crate::wire::json;
 
@@ -44,12 +44,7 @@ pub fn run(Choice { files, meshes, first_line, certify }: &Choice) -> ExitCode {
     for file in files {
         match answer_file(file, meshes, Lines { read: first_line - 1 }, write, &mut output) {
             Ok(Tally { errors, .. }) => any_error |= errors > 0,
-            Err(Failure::Output(why)) if why.kind() == io::ErrorKind::BrokenPipe => break,
-            Err(Failure::Output(why)) => {
-                any_failure = true;
-                complain(&format!("cannot write the answers: {why}"));
-                break;
-            }
+            Err(Failure::Output(why)) => return output::failed("cannot write the answers", &why),
             Err(Failure::Input(why)) => {
                 any_failure = true;
                 complain(&format!("cannot read {}: {why}", file.display()));
@@ -194,14 +189,8 @@ pub fn certified(text: &[u8], meshes: &Meshes) -> Option<Vec<u8>> {
 
 /// The line of output for a line of input, and whether it is an answer.
 fn answer_line(Numbered { line, text }: &Numbered, meshes: &Meshes) -> (bool, Vec<u8>) {
-    let number = || Value::from(*line);
-    let (id, outcome) = match json::object(text) {
-        Ok(object) => {
-            let id = object.get("id").cloned().unwrap_or_else(number);
-            (id, engine::question(&object, meshes).and_then(|question| question.ask()))
-        }
-        Err(problem) => (json::id_of(text).unwrap_or_else(number), Err(problem)),
-    };
+    let asked = json::object(text).and_then(|object| engine::question(&object, meshes));
+    let (id, outcome) = (json::id_of(text), asked.and_then(|question| question.ask()));
     let answered = outcome.is_ok();
     // Writing to memory fails only for values that are no JSON, and there are none in a `Line`.
     let mut text = serde_json::to_vec(&Line { id, line: *line, outcome }).unwrap_or_default();

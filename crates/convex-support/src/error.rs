@@ -34,6 +34,12 @@ pub enum InvalidShape {
         /// The value, converted to `f64`.
         value: f64,
     },
+    /// A vector that must have a direction is zero, or so short or long that its length is not a number of full
+    /// precision.
+    NoDirection {
+        /// The parameter, as the constructor names it.
+        parameter: &'static str,
+    },
     /// A list of points is empty.
     NoPoints,
     /// Numbers are finite, but the shape they make is larger than the largest number.
@@ -71,6 +77,10 @@ impl fmt::Display for InvalidShape {
             Self::NotPositive { parameter, index, value } => {
                 write!(f, "{parameter} must be greater than zero, but is {value} at index {index}")
             }
+            Self::NoDirection { parameter } => write!(
+                f,
+                "{parameter} must have a direction, but is zero, or too short or long for its floating-point type"
+            ),
             Self::NoPoints => f.write_str("at least one point is needed, but the list is empty"),
             Self::NotSymmetric { row, column } => {
                 write!(f, "the matrix must be symmetric, but entries ({row}, {column}) and ({column}, {row}) differ")

@@ -44,6 +44,30 @@ impl Set {
     }
 }
 
+impl Set {
+    /// A bound on all numbers that computing a point of the set in floating point comes by, of which rounding takes its
+    /// share: in a pose far away and back again these are far larger than the set.
+    pub(crate) fn magnitude(&self) -> Interval {
+        match self {
+            Self::Points(points) => {
+                points.iter().map(Vector::length).fold(Interval::zero(), |most, length| most.max(&length))
+            }
+            Self::Ball => Interval::from(1.0),
+            Self::Image(of, rows, at) => &(&stretch(rows) * &of.magnitude()) + &at.length(),
+            Self::Sum(of) => of.iter().map(Self::magnitude).fold(Interval::zero(), |sum, part| &sum + &part),
+            Self::Hull(of) => of.iter().map(Self::magnitude).fold(Interval::zero(), |most, part| most.max(&part)),
+        }
+    }
+}
+
+/// A bound on how far a map stretches a vector: that of Gershgorin on the largest eigenvalue of `M·Mᵀ`, which is 1 for
+/// a rotation.
+fn stretch(rows: &[Vector; 3]) -> Interval {
+    let products =
+        |row: &Vector| rows.iter().map(|other| row.dot(other).absolute()).fold(Interval::zero(), |s, p| &s + &p);
+    rows.iter().map(products).fold(Interval::zero(), |most, sum| most.max(&sum)).root()
+}
+
 /// The farthest of some points, and how far the farthest is.
 fn farthest(mut points: impl Iterator<Item = (Vector, Interval)>) -> (Vector, Interval) {
     let Some((mut best, mut at)) = points.next() else { return (Vector::zero(), Interval::unknown()) };
@@ -92,6 +116,11 @@ pub(crate) fn ball(radius: &Interval) -> Set {
 impl Body {
     pub(crate) fn of(core: Set) -> Self {
         Self { core, radius: Interval::zero() }
+    }
+
+    /// The [magnitude](Set::magnitude) of the core, and the radius.
+    pub(crate) fn magnitude(&self) -> Interval {
+        &self.core.magnitude() + &self.radius
     }
 
     /// The body as one set, but for a ball of the given radius.

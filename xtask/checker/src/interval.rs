@@ -174,6 +174,13 @@ impl Interval {
         Self { low, high }
     }
 
+    /// A double between its ends, or near to it; zero where they bound nothing.
+    pub(crate) fn middle(&self) -> f64 {
+        let [low, high] = [&self.low, &self.high].map(|end| end.to_f64().value());
+        let middle = low * 0.5 + high * 0.5;
+        if middle.is_finite() { middle } else { 0.0 }
+    }
+
     /// The double nearest to its lower end, for people to read.
     pub fn to_f64(&self) -> f64 {
         self.low.to_f64().value()

@@ -6,16 +6,20 @@
 
 mod body;
 mod certificate;
+mod claims;
 mod free;
 mod interval;
+mod near;
 mod planes;
+mod question;
 mod reader;
 mod robot;
 #[cfg(test)]
 mod tests;
 
-pub use self::certificate::{Bounds, Verdict, judge};
-pub use self::free::{RobotProof, judge_robot};
+pub use self::certificate::Bounds;
+pub use self::claims::{Proof, Verdict, judge};
+pub use self::free::Parts;
 pub use self::interval::Interval;
 pub use self::planes::Solid;
 pub use self::reader::{Points, Reader, Unread};

@@ -1,6 +1,7 @@
 //! The shapes of a query, read from the query itself: a cylinder is the sum of a segment and a flat ball, a cone the
 //! hull of a flat ball and its apex.
 
+use std::cell::Cell;
 use std::fmt;
 
 use serde_json::Value;
@@ -10,11 +11,15 @@ use crate::interval::{Interval, Vector};
 
 /// What a query's numbers mean: each is the nearest double to what is written, and in single precision the nearest
 /// `f32` to that.
+///
+/// Nothing is left out: a field that is not read, or a vector of another dimension than those before it, is an error.
 pub struct Reader<'m> {
     /// Whether the query is one in single precision.
-    pub single: bool,
+    single: bool,
     /// The vertices of the mesh at a path, or why there are none.
-    pub mesh: &'m dyn Fn(&str) -> Result<Points, Unread>,
+    mesh: &'m dyn Fn(&str) -> Result<Points, Unread>,
+    /// The dimension of what was read so far.
+    dimension: Cell<Option<usize>>,
 }
 
 impl fmt::Debug for Reader<'_> {
@@ -26,25 +31,89 @@ impl fmt::Debug for Reader<'_> {
 /// The vertices of a mesh.
 pub type Points = Vec<[f64; 3]>;
 
-/// A field that is missing, or is not what it must be.
+/// A field that is missing, that is not what it must be, or that is not read.
 pub type Unread = String;
 
+/// The shapes, and the fields of each beside its `type`.
+const SHAPES: &[(&str, &[&str])] = &[
+    ("point", &["at"]),
+    ("segment", &["points"]),
+    ("triangle", &["points"]),
+    ("polytope", &["points"]),
+    ("mesh", &["path"]),
+    ("cuboid", &["half_extents"]),
+    ("ball", &["radius"]),
+    ("capsule", &["half_height", "radius"]),
+    ("cylinder", &["half_height", "radius"]),
+    ("cone", &["half_height", "radius"]),
+    ("ellipsoid", &["center", "matrix"]),
+    ("ellipsoid", &["center", "semi_axes", "rotation"]),
+    ("posed", &["of", "translation", "rotation"]),
+    ("affine", &["of", "matrix", "translation"]),
+    ("minkowski_sum", &["of"]),
+    ("difference", &["a", "b"]),
+    ("hull", &["of"]),
+    ("rounded", &["of", "radius"]),
+];
+
+impl<'m> Reader<'m> {
+    /// The reader of a query in its precision.
+    ///
+    /// # Errors
+    /// Where the precision is none.
+    pub fn new(line: &Value, mesh: &'m dyn Fn(&str) -> Result<Points, Unread>) -> Result<Self, Unread> {
+        let single = match line.get("precision").map(Value::as_str) {
+            None | Some(Some("f64")) => false,
+            Some(Some("f32")) => true,
+            Some(_) => return Err("precision is neither \"f32\" nor \"f64\"".to_owned()),
+        };
+        Ok(Self { single, mesh, dimension: Cell::new(None) })
+    }
+}
+
 impl Reader<'_> {
+    /// The unit of rounding of the query's answer.
+    pub(crate) fn rounding(&self) -> Interval {
+        Interval::from(if self.single { f64::from(f32::EPSILON) } else { f64::EPSILON })
+    }
+
+    /// The dimension of the query; 3 where nothing says it.
+    pub(crate) fn dimension(&self) -> usize {
+        self.dimension.get().unwrap_or(3)
+    }
+
+    /// Notes that something is of a dimension.
+    fn note(&self, dimension: usize, what: &Value) -> Result<(), Unread> {
+        match self.dimension.get() {
+            Some(known) if known != dimension => {
+                Err(format!("{what:.40} is of dimension {dimension}, but what is before it is of dimension {known}"))
+            }
+            _ => {
+                self.dimension.set(Some(dimension));
+                Ok(())
+            }
+        }
+    }
+
     pub(crate) fn number(&self, value: &Value) -> Result<f64, Unread> {
-        let number = value.as_f64().ok_or_else(|| format!("{value:.40} is no number"))?;
+        let number = double(value)?;
         Ok(if self.single { f64::from(number as f32) } else { number })
     }
 
     fn numbers(&self, value: &Value) -> Result<Vec<f64>, Unread> {
-        let items = value.as_array().ok_or_else(|| format!("{value:.40} is no list of numbers"))?;
-        items.iter().map(|item| self.number(item)).collect()
+        listed(value)?.iter().map(|item| self.number(item)).collect()
     }
 
     pub(crate) fn vector(&self, value: &Value) -> Result<Vector, Unread> {
-        let numbers = self.numbers(value)?;
+        self.space(value, &self.numbers(value)?)
+    }
+
+    /// The vector of these coordinates, written so.
+    fn space(&self, written: &Value, numbers: &[f64]) -> Result<Vector, Unread> {
         if !matches!(numbers.len(), 2 | 3) {
-            return Err(format!("{value:.40} is no vector"));
+            return Err(format!("{written:.40} is no vector"));
         }
+        self.note(numbers.len(), written)?;
         Ok(Vector(std::array::from_fn(|i| Interval::from(numbers.get(i).copied().unwrap_or(0.0)))))
     }
 
@@ -54,8 +123,26 @@ impl Reader<'_> {
     }
 
     fn vectors(&self, value: &Value) -> Result<Vec<Vector>, Unread> {
-        let items = value.as_array().ok_or_else(|| format!("{value:.40} is no list of vectors"))?;
-        items.iter().map(|item| self.vector(item)).collect()
+        listed(value)?.iter().map(|item| self.vector(item)).collect()
+    }
+
+    /// So many points, or more than none.
+    fn points(&self, shape: &Value, count: Option<usize>) -> Result<Set, Unread> {
+        let points = self.vectors(field(shape, "points")?)?;
+        if points.is_empty() || count.is_some_and(|count| points.len() != count) {
+            return Err(format!("{} points are no such shape", points.len()));
+        }
+        Ok(Set::Points(points))
+    }
+
+    /// A vector of lengths, none of which is negative.
+    fn lengths(&self, value: &Value) -> Result<Vector, Unread> {
+        let lengths = self.vector(value)?;
+        if lengths.0.iter().all(Interval::is_not_negative) {
+            Ok(lengths)
+        } else {
+            Err(format!("{value:.40} has a negative length"))
+        }
     }
 
     /// A length, which is not negative.
@@ -66,9 +153,19 @@ impl Reader<'_> {
         }
     }
 
-    /// The rows of a matrix, and zero for those beyond the dimension.
+    /// The rows of a square matrix, and zero for those beyond the dimension.
     fn rows(&self, value: &Value) -> Result<[Vector; 3], Unread> {
-        let mut rows = self.vectors(value)?;
+        self.square(value, self.vectors(value)?)
+    }
+
+    /// The same in double precision, whatever the query's.
+    fn exact_rows(&self, value: &Value) -> Result<[Vector; 3], Unread> {
+        let row = |row| self.space(row, &doubles(row)?);
+        self.square(value, listed(value)?.iter().map(row).collect::<Result<_, _>>()?)
+    }
+
+    fn square(&self, written: &Value, mut rows: Vec<Vector>) -> Result<[Vector; 3], Unread> {
+        self.note(rows.len(), written)?;
         rows.resize_with(3, Vector::zero);
         rows.try_into().map_err(|_| "a matrix has too many rows".to_owned())
     }
@@ -80,6 +177,7 @@ impl Reader<'_> {
         let one = Interval::from(1.0);
         let Some(value) = value else { return Ok(diagonal(std::array::from_fn(|_| one.clone()))) };
         if value.is_number() {
+            self.note(2, value)?;
             let [sine, cosine] = Interval::from(self.number(value)?).sine_and_cosine();
             let zero = Interval::zero();
             return Ok([
@@ -88,7 +186,8 @@ impl Reader<'_> {
                 Vector([zero.clone(), zero, one]),
             ]);
         }
-        let mut q = Reader { single: false, ..*self }.numbers(value)?;
+        let mut q = doubles(value)?;
+        self.note(3, value)?;
         if self.single {
             let largest = q.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
             let unit = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits()).max(f64::MIN_POSITIVE);
@@ -113,6 +212,16 @@ impl Reader<'_> {
     /// The shape that an object is.
     pub(crate) fn body(&self, shape: &Value) -> Result<Body, Unread> {
         let get = |name| field(shape, name);
+        let kind = get("type")?.as_str().unwrap_or_default();
+        let has = |fields: &[&str]| only(shape, "a shape", &[&["type"], fields]);
+        let mut unread = unread_shape(kind).map(|_| ());
+        for (_, fields) in SHAPES.iter().filter(|(name, _)| *name == kind) {
+            unread = has(fields);
+            if unread.is_ok() {
+                break;
+            }
+        }
+        unread?;
         let of = || self.body(get("of")?);
         let several = || match get("of")?.as_array() {
             Some(of) if !of.is_empty() => of.iter().map(|one| self.body(one)).collect::<Result<Vec<_>, _>>(),
@@ -130,11 +239,16 @@ impl Reader<'_> {
             let flat = diagonal([radius.clone(), Interval::zero(), radius]);
             Ok(Set::Image(Box::new(Set::Ball), flat, Vector::zero()))
         };
-        Ok(match field(shape, "type")?.as_str().unwrap_or_default() {
+        if matches!(kind, "cylinder" | "cone" | "mesh") {
+            self.note(3, get("type")?)?;
+        }
+        Ok(match kind {
             "point" => Body::of(Set::Points(vec![self.vector(get("at")?)?])),
-            "segment" | "triangle" | "polytope" => Body::of(Set::Points(self.vectors(get("points")?)?)),
+            "segment" => Body::of(self.points(shape, Some(2))?),
+            "triangle" => Body::of(self.points(shape, Some(3))?),
+            "polytope" => Body::of(self.points(shape, None)?),
             "mesh" => Body::of(self.mesh(get("path")?)?),
-            "cuboid" => Body::of(corners(&self.vector(get("half_extents")?)?)),
+            "cuboid" => Body::of(corners(&self.lengths(get("half_extents")?)?)),
             "ball" => Body { core: Set::Points(vec![Vector::zero()]), radius: self.length(shape, "radius")? },
             "capsule" => Body { core: upright()?, radius: self.length(shape, "radius")? },
             "cylinder" => Body::of(Set::Sum(vec![upright()?, disc()?])),
@@ -161,7 +275,10 @@ impl Reader<'_> {
                     }
                 }
             }
-            "minkowski_sum" => sum(several()?),
+            "minkowski_sum" => match several()? {
+                parts if parts.len() > 1 => sum(parts),
+                _ => return Err("a sum is of two shapes or more".to_owned()),
+            },
             "difference" => difference(self.body(get("a")?)?, self.body(get("b")?)?),
             "hull" => {
                 let parts = several()?;
@@ -174,7 +291,7 @@ impl Reader<'_> {
                 let Body { core, radius } = of()?;
                 Body { core, radius: &radius + &self.length(shape, "radius")? }
             }
-            other => return Err(format!("there is no shape \"{other}\"")),
+            _ => return unread_shape(kind),
         })
     }
 
@@ -191,11 +308,11 @@ impl Reader<'_> {
     fn ellipsoid(&self, shape: &Value) -> Result<Set, Unread> {
         let center = self.vector_or_zero(shape, "center")?;
         if let Some(semi_axes) = shape.get("semi_axes") {
-            let stretched = Set::Image(Box::new(Set::Ball), diagonal(self.vector(semi_axes)?.0), Vector::zero());
+            let stretched = Set::Image(Box::new(Set::Ball), diagonal(self.lengths(semi_axes)?.0), Vector::zero());
             return Ok(Set::Image(Box::new(stretched), self.rotation(shape.get("rotation"))?, center));
         }
         let written = field(shape, "matrix")?;
-        let given = Reader { single: false, ..*self }.rows(written)?;
+        let given = self.exact_rows(written)?;
         let n = written.as_array().map_or(0, Vec::len);
         let half = Interval::from(0.5);
         // Row by row, the inverse m of the factor l beside it: l·m = 1, and the image is that under mᵀ.
@@ -222,4 +339,32 @@ impl Reader<'_> {
 
 pub(crate) fn field<'v>(object: &'v Value, name: &str) -> Result<&'v Value, Unread> {
     object.get(name).ok_or_else(|| format!("the field \"{name}\" is missing"))
+}
+
+fn unread_shape(kind: &str) -> Result<Body, Unread> {
+    Err(format!("there is no shape \"{kind}\""))
+}
+
+/// Checks that an object, called so, has no fields but these, and remarks.
+pub(crate) fn only(object: &Value, what: &str, fields: &[&[&str]]) -> Result<(), Unread> {
+    let object = object.as_object().ok_or_else(|| format!("{what} is no object"))?;
+    let is_read = |key: &str| key.starts_with('_') || key == "book" || fields.iter().any(|some| some.contains(&key));
+    match object.keys().find(|key| !is_read(key)) {
+        None => Ok(()),
+        Some(key) => Err(format!("the field \"{key}\" of {what} is not read here, and what it says is not proved")),
+    }
+}
+
+/// The items of a list.
+pub(crate) fn listed(value: &Value) -> Result<&[Value], Unread> {
+    value.as_array().map(Vec::as_slice).ok_or_else(|| format!("{value:.40} is no list"))
+}
+
+/// The double that a number is written as, whatever the precision of the query.
+fn double(value: &Value) -> Result<f64, Unread> {
+    value.as_f64().ok_or_else(|| format!("{value:.40} is no number"))
+}
+
+fn doubles(value: &Value) -> Result<Vec<f64>, Unread> {
+    listed(value)?.iter().map(double).collect()
 }

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::body::{Body, Set, apply, combined, product, transposed};
 use crate::interval::{Interval, Vector};
-use crate::reader::{Reader, Unread, field};
+use crate::reader::{Reader, Unread, field, only};
 
 /// A robot as its query says it.
 pub(crate) struct Robot {
@@ -70,6 +70,7 @@ impl Robot {
         let mut joints = Vec::new();
         let mut values = 0;
         for joint in list("joints")? {
+            only(&joint, "a joint", &[&["type", "parent", "translation", "rotation", "axis"]])?;
             let kind = match field(&joint, "type")?.as_str().unwrap_or_default() {
                 "revolute" => Some(Kind::Turns),
                 "prismatic" => Some(Kind::Slides),
@@ -93,12 +94,28 @@ impl Robot {
         }
         let written = list("links")?;
         let links = written.iter().map(|link| {
+            only(link, "a link", &[&["joint", "shapes"]])?;
             let shapes = field(link, "shapes")?.as_array().ok_or("the shapes of a link are no list")?;
             let bodies = shapes.iter().map(|shape| reader.body(shape)).collect::<Result<_, _>>()?;
             Ok(Link { joint: index(link, "joint", joints.len())?, bodies })
         });
         let links = links.collect::<Result<_, Unread>>()?;
         Ok(Self { joints, links, values })
+    }
+
+    /// A bound on how far from the world's origin joints take what they carry, and on the sum of the angles that they
+    /// turn by, while no value is more than `most`.
+    pub(crate) fn magnitude(&self, most: &[Interval]) -> (Interval, Interval) {
+        let (mut size, mut turns) = (Interval::zero(), Interval::zero());
+        for joint in &self.joints {
+            size = &size + &joint.at.length();
+            match &joint.moves {
+                Some((Kind::Slides, _, value)) => size = &size + &most[*value],
+                Some((Kind::Turns, _, value)) => turns = &turns + &most[*value],
+                None => {}
+            }
+        }
+        (size, turns)
     }
 
     /// The joints from the world to a link.

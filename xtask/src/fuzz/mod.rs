@@ -64,10 +64,7 @@ pub fn run(scope: &Scope) -> ExitCode {
     match fuzz(scope, &mut io::stdout()) {
         Ok(0) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: {why}");
-            ExitCode::from(2)
-        }
+        Err(why) => crate::output::failed("cannot read or write", &why),
     }
 }
 

@@ -54,7 +54,7 @@ struct Motion {
 /// The answer of this workspace to a query: the fields, or none where it gave an error.
 pub fn ask(object: &Object) -> Option<Object> {
     let outcome = engine::question(object, &Meshes::relative_to("")).and_then(|question| question.ask());
-    outcome.is_ok().then(|| as_read(Line { id: Value::Null, line: 0, outcome }))
+    outcome.is_ok().then(|| as_read(Line { id: None, line: 0, outcome }))
 }
 
 fn number(object: &Object, field: &str) -> Option<f64> {

@@ -107,7 +107,7 @@ pub fn ours(questions: &[Question], precision: &'static str, mut progress: impl 
         if outcome.is_err() {
             return Reply::NoAnswer;
         }
-        let answer = as_read(Line { id: Value::Null, line: 0, outcome });
+        let answer = as_read(Line { id: None, line: 0, outcome });
         Reply::Answer { claim: claim(&object, &answer), ns: question.time(MICROSECONDS) }
     };
     Witness {

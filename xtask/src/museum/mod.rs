@@ -23,6 +23,7 @@ use self::drawing::Role;
 use self::sheet::Cell;
 use crate::engine;
 use crate::mesh::Meshes;
+use crate::output;
 use crate::prove::judge_line;
 use crate::query::certified;
 use crate::table::aligned;
@@ -54,28 +55,34 @@ struct Piece {
 
 /// Asks about every pose, and prints the table.
 pub fn run(choice: Choice) -> ExitCode {
-    let done = pieces().and_then(|pieces| {
-        print(&pieces).map_err(|why| format!("cannot print: {why}"))?;
-        if choice.write {
-            let file = note::path("museum.md");
-            for part in &PARTS {
-                note::write(&file, part.name, &markdown(&pieces, part))
-                    .map_err(|why| format!("cannot write {}: {why}", file.display()))?;
-                let figure = part.figure();
-                fs::write(&figure, part.sheet(&pieces)?)
-                    .map_err(|why| format!("cannot write {}: {why}", figure.display()))?;
-            }
-        }
-        Ok(pieces.iter().all(Piece::is_right))
-    });
-    match done {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: {why}");
-            ExitCode::from(2)
-        }
+    let pieces = match pieces() {
+        Ok(pieces) => pieces,
+        Err(why) => return complain(&why),
+    };
+    if let Err(why) = print(&pieces) {
+        return output::failed("cannot write the table", &why);
     }
+    if let Err(why) = if choice.write { write(&pieces) } else { Ok(()) } {
+        return complain(&why);
+    }
+    if pieces.iter().all(Piece::is_right) { ExitCode::SUCCESS } else { ExitCode::from(1) }
+}
+
+fn complain(why: &str) -> ExitCode {
+    let _ = writeln!(io::stderr(), "error: {why}");
+    ExitCode::from(2)
+}
+
+/// Writes the tables and the drawings into the note.
+fn write(pieces: &[Piece]) -> Result<(), String> {
+    let file = note::path("museum.md");
+    for part in &PARTS {
+        note::write(&file, part.name, &markdown(pieces, part))
+            .map_err(|why| format!("cannot write {}: {why}", file.display()))?;
+        let figure = part.figure();
+        fs::write(&figure, part.sheet(pieces)?).map_err(|why| format!("cannot write {}: {why}", figure.display()))?;
+    }
+    Ok(())
 }
 
 /// A part of the note: its poses are of these kinds of query.
@@ -120,10 +127,10 @@ fn piece(line: &str) -> Result<Piece, String> {
     let meshes = Meshes::relative_to("");
     let case = json::object(line.as_bytes()).map_err(|why| format!("{line}: {}", why.message))?;
     let outcome = engine::question(&case, &meshes).and_then(|question| question.ask());
-    let answer = as_read(Line { id: Value::Null, line: 1, outcome });
+    let answer = as_read(Line { id: None, line: 1, outcome });
     let proof = certified(line.as_bytes(), &meshes)
         .filter(|line| line.windows(14).any(|part| part == b"\"certificate\":"))
-        .map(|line| judge_line(1, &line, &meshes).0);
+        .map(|line| judge_line(&line, &meshes).0);
     Ok(Piece { verdict: judge(&case, &answer), case, answer, proof })
 }
 

@@ -12,12 +12,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
-use checker::{Bounds, Reader, RobotProof, Unread, Verdict, judge, judge_robot};
+use checker::{Bounds, Parts, Proof, Reader, Unread, Verdict, judge};
 use clap::Args;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::mesh::Meshes;
+use crate::output;
 use crate::wire::json;
 
 /// What to prove.
@@ -66,10 +67,7 @@ pub fn run(choice: &Choice) -> ExitCode {
     match prove(choice, &mut BufWriter::new(io::stdout().lock())) {
         Ok(Counts { not_proved: 0, disproved: 0, .. }) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: {why}");
-            ExitCode::from(2)
-        }
+        Err(why) => output::failed("cannot read or write", &why),
     }
 }
 
@@ -104,11 +102,13 @@ fn prove(choice: &Choice, output: &mut impl Write) -> io::Result<Counts> {
             }
             let asks = |(_, line): &&(u64, Vec<u8>)| !line.trim_ascii().is_empty() && !line.starts_with(b"#");
             let asked: Vec<_> = batch.iter().filter(asks).collect();
-            let judged: Vec<_> = asked.into_par_iter().map(|(i, line)| judge_line(*i, line, &meshes)).collect();
-            for (verdict, text) in judged {
-                counts.add(verdict, &text);
+            let judged: Vec<_> = asked.par_iter().map(|(_, line)| judge_line(line, &meshes)).collect();
+            for ((i, line), (verdict, said)) in asked.into_iter().zip(judged) {
+                counts.add(verdict, &said);
                 if !(choice.quiet && verdict == Verdict::Proved) {
-                    writeln!(output, "{text}")?;
+                    let id = json::id_of(line.trim_ascii()).map_or_else(|| i.to_string(), |id| id.get().to_owned());
+                    let said = said.to_string();
+                    writeln!(output, "{{\"id\":{id},{}", said.trim_start_matches('{'))?;
                 }
             }
         }
@@ -155,37 +155,33 @@ impl Counts {
     }
 }
 
-/// The verdict on a line, and the line of output.
-pub(crate) fn judge_line(number: u64, line: &[u8], meshes: &Meshes) -> (Verdict, Value) {
-    let read = json::object(line.trim_ascii()).map(Value::Object).map_err(|why| why.message);
-    let id = read.as_ref().ok().and_then(|line| line.get("id")).cloned().unwrap_or_else(|| number.into());
-    let said = |verdict| match verdict {
-        Verdict::Proved => "proved",
-        Verdict::NotProved => "not proved",
-        Verdict::Disproved => "disproved",
-    };
-    let judged: Result<(Verdict, Value), Unread> = read.and_then(|line| {
-        let single = line.get("precision").and_then(Value::as_str) == Some("f32");
+/// The verdict on a line, and what is said of it.
+pub(crate) fn judge_line(line: &[u8], meshes: &Meshes) -> (Verdict, Value) {
+    let judged: Result<Proof, Unread> = json::object(line.trim_ascii()).map_err(|why| why.message).and_then(|line| {
         let mesh = |path: &str| {
             let mesh = meshes.load(Path::new(path)).map_err(|why| why.message)?;
             Ok(mesh.points().iter().map(|point| point.to_array()).collect())
         };
-        let reader = Reader { single, mesh: &mesh };
-        if matches!(line.get("query").and_then(Value::as_str), Some("path" | "joint_box")) {
-            let RobotProof { is_of_free, verdict, because, proved, not_proved } = judge_robot(&line, &reader)?;
-            let claim = if is_of_free { "free" } else { "met" };
-            let mut answer = json!({"claim": claim, "verdict": said(verdict), PARTS[0]: proved, PARTS[1]: not_proved});
-            if let Some(because) = because {
-                answer["because"] = because.into();
-            }
-            return Ok((verdict, answer));
-        }
-        let (verdict, Bounds { lower, upper }) = judge(&line, &reader)?;
-        // Infinity is null.
-        Ok((verdict, json!({"verdict": said(verdict), "lower": lower.to_f64(), "upper": upper.to_f64()})))
+        let line = Value::Object(line);
+        judge(&line, &Reader::new(&line, &mesh)?)
     });
-    let (verdict, mut answer) =
-        judged.unwrap_or_else(|why| (Verdict::NotProved, json!({"verdict": said(Verdict::NotProved), "because": why})));
-    answer["id"] = id;
-    (verdict, answer)
+    let unread = |why| Proof { verdict: Verdict::NotProved, because: Some(why), bounds: None, parts: None };
+    let Proof { verdict, because, bounds, parts } = judged.unwrap_or_else(unread);
+    let mut said = json!({"verdict": match verdict {
+        Verdict::Proved => "proved",
+        Verdict::NotProved => "not proved",
+        Verdict::Disproved => "disproved",
+    }});
+    if let Some(Bounds { lower, upper }) = bounds {
+        // Infinity is null.
+        (said["lower"], said["upper"]) = (lower.to_f64().into(), upper.to_f64().into());
+    }
+    if let Some(Parts { are_of_free, proved, not_proved }) = parts {
+        said["claim"] = if are_of_free { "free" } else { "met" }.into();
+        (said[PARTS[0]], said[PARTS[1]]) = (proved.into(), not_proved.into());
+    }
+    if let Some(because) = because {
+        said["because"] = because.into();
+    }
+    (verdict, said)
 }

@@ -22,7 +22,7 @@ fn answered(query: &Value) -> Value {
 }
 
 fn verdict(line: &Value) -> Verdict {
-    judge_line(1, line.to_string().as_bytes(), &meshes()).0
+    judge_line(line.to_string().as_bytes(), &meshes()).0
 }
 
 /// All but a ray through the apex of a cone, and two that start on a boundary: neither comes out exactly.
@@ -33,7 +33,7 @@ fn the_embedded_suite_is_proved() {
         let text = std::fs::read_to_string(format!("{EMBEDDED}/{name}.jsonl")).expect("the suite is there");
         for line in text.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
             let Some(line) = certified(line.as_bytes(), &meshes()) else { continue };
-            let (verdict, said) = judge_line(1, &line, &meshes());
+            let (verdict, said) = judge_line(&line, &meshes());
             counts.add(verdict, &said);
         }
     }
@@ -149,6 +149,173 @@ fn of_ten_thousand_damaged_certificates_none_proves() {
     assert!(disproved > 1000, "brackets beside the truth are disproved, but only {disproved} were");
 }
 
+/// The claims of an answer, each spoilt in turn by more than its bracket, in a line of its own; and the options of a
+/// question, each added such that the answer is another one.
+fn spoilt(line: &Value) -> Vec<Value> {
+    let answer = &line["answer"];
+    let mut lines = Vec::new();
+    let mut with = |object: Option<&str>, name: &str, value: Value| {
+        let mut line = line.clone();
+        match object {
+            Some(object) => line[object][name] = value,
+            None => line[name] = value,
+        }
+        lines.push(line);
+    };
+    let number = |name: &str| answer[name].as_f64();
+    let bracket = number("lower").zip(number("upper"));
+    let scalar = ["distance", "lambda", "time"].into_iter().find(|name| answer.get(name).is_some());
+    let far = |x: f64| x + 1e-3 * (1.0 + x.abs());
+    for (name, value) in answer.as_object().expect("an answer") {
+        let spoilt: Vec<Value> = match (name.as_str(), value) {
+            ("status", _) => vec![json!("certain"), json!(7)],
+            ("iterations" | "casts" | "boxes", _) => vec![json!(-1), json!("many")],
+            ("lower", _) => bracket.iter().map(|(lower, upper)| json!(far(*upper).max(far(*lower)))).collect(),
+            ("upper", _) => bracket.iter().map(|(lower, _)| json!(lower - 1e-3 * (1.0 + lower.abs()))).collect(),
+            (_, Value::Bool(flag)) => vec![json!(!flag)],
+            (_, Value::Number(index)) if index.is_u64() => vec![json!(index.as_u64().unwrap_or(0) + 1000), json!(-1)],
+            (_, Value::Number(_)) => {
+                let (lower, upper) = bracket.expect("a scalar has a bracket");
+                vec![json!(far(upper)), json!(lower - 1e-3 * (1.0 + lower.abs()))]
+            }
+            (_, Value::Array(coordinates)) => {
+                let turned = |i: usize| {
+                    let x = coordinates[i].as_f64().expect("a number");
+                    let mut all = coordinates.clone();
+                    all[i] = json!(x + 0.5 * (1.0 + x.abs()));
+                    Value::Array(all)
+                };
+                let flipped = coordinates.iter().map(|x| json!(-x.as_f64().expect("a number"))).collect();
+                let is_of_direction = matches!(name.as_str(), "normal" | "axis");
+                (0..coordinates.len()).map(turned).chain(is_of_direction.then_some(flipped)).collect()
+            }
+            // Only a ray may begin on the boundary, where either is right.
+            (_, Value::Null) => vec![],
+            _ => panic!("{name} is not spoilt: {line}"),
+        };
+        spoilt.into_iter().for_each(|value| with(Some("answer"), name, value));
+    }
+    for (name, value) in [("nobody_knows", json!(1)), ("gradient_a", json!({})), ("margin", json!(0.5))] {
+        with(Some("answer"), name, value.clone());
+        with(None, name, value);
+    }
+    with(None, "precision", json!("f16"));
+    if let (Some(scalar), Some((lower, upper))) = (scalar, bracket) {
+        // Of a bracket without an end the number itself is a claim.
+        let mut open = line.clone();
+        let _ = open["answer"].as_object_mut().expect("an answer").remove("upper");
+        open["answer"][scalar] = json!(far(upper));
+        lines.push(open);
+        let mut with = |name: &str, value: Value| {
+            let mut line = line.clone();
+            line[name] = value;
+            lines.push(line);
+        };
+        if lower > 1e-3 {
+            if scalar == "lambda" {
+                with("min_lambda", json!(far(upper)));
+                with("max_lambda", json!(0.5 * lower));
+            }
+            if scalar == "time" {
+                with("max_time", json!(0.5 * lower));
+                let speed = ["velocity_a", "velocity_b"].map(|name| line[name].clone());
+                if speed.iter().any(|v| v.as_array().is_some_and(|v| v.iter().any(|x| x.as_f64() != Some(0.0)))) {
+                    with("target_distance", json!(1e3 * (1.0 + upper)));
+                }
+            }
+        }
+    }
+    lines
+}
+
+/// Whatever an answer claims, and whatever is asked, is checked, or nothing is proved.
+#[test]
+fn no_claim_of_a_proved_answer_can_be_spoilt_without_notice() {
+    let mut lines = Vec::new();
+    for name in ["distance", "intersect", "ray_cast", "linear_cast"] {
+        let text = std::fs::read_to_string(format!("{EMBEDDED}/{name}.jsonl")).expect("the suite is there");
+        lines.extend(text.lines().filter(|line| line.starts_with('{')).map(str::to_owned));
+    }
+    let tried: usize = lines
+        .par_iter()
+        .map(|line| {
+            let Some(line) = certified(line.as_bytes(), &meshes()) else { return 0 };
+            let mut line: Value = serde_json::from_slice(&line).expect("JSON");
+            // What is allowed would count where a bracket is open.
+            let _ = line.as_object_mut().expect("a query").remove("allow");
+            if verdict(&line) != Verdict::Proved {
+                return 0;
+            }
+            let spoilt = spoilt(&line);
+            for damaged in &spoilt {
+                assert_ne!(verdict(damaged), Verdict::Proved, "{damaged}\n once {line}");
+            }
+            spoilt.len()
+        })
+        .sum();
+    assert!(tried > 4000, "only {tried} were spoilt");
+}
+
+/// A line whose claim is true is not disproved, whoever makes it, and with whatever options.
+#[test]
+fn true_answers_to_options_are_proved() {
+    let ball = json!({"type": "ball", "radius": 1});
+    let cast = |options: Value| {
+        let mut line = json!({"query": "ray_cast", "target": ball, "source": [5, 0, 0], "direction": [-1, 0, 0]});
+        line.as_object_mut().expect("a query").extend(options.as_object().expect("options").clone());
+        line
+    };
+    let moved = json!({"type": "posed", "translation": [5, 0.3, 0.1], "of": ball});
+    let cube = json!({"type": "cuboid", "half_extents": [1, 2, 3]});
+    let near =
+        json!({"query": "linear_cast", "a": cube, "b": moved, "velocity_a": [1, 0.1, 0], "target_distance": 0.5});
+    let mut deeper = near.clone();
+    deeper["start_in_contact"] = json!("if_deeper");
+    for (query, name, truth) in [
+        (cast(json!({"min_lambda": 4.5})), "lambda", 4.5),
+        (cast(json!({"min_lambda": 3.5, "max_lambda": 4})), "lambda", 4.0),
+        (cast(json!({"min_lambda": -3})), "lambda", 4.0),
+        (near, "time", 2.5),
+        (deeper, "time", 2.5),
+    ] {
+        let line = answered(&query);
+        let (verdict, said) = judge_line(line.to_string().as_bytes(), &meshes());
+        assert!((line["answer"][name].as_f64().expect("a hit") - truth).abs() < 1e-12, "{line}");
+        assert_eq!(verdict, Verdict::Proved, "{said} of {line}");
+    }
+    let line = answered(&cast(json!({"min_lambda": 6.5})));
+    assert_eq!((verdict(&line), &line["answer"]["hit"]), (Verdict::Proved, &json!(false)), "{line}");
+}
+
+/// What no certificate proves, or is not read here, is said.
+#[test]
+fn what_is_not_checked_is_named() {
+    let ball = |x: f64| json!({"type": "posed", "translation": [x, 0], "of": {"type": "ball", "radius": 1}});
+    let gradient = answered(&json!({"query": "distance", "a": ball(5.0), "b": ball(0.0), "gradient": true}));
+    let plain = answered(&json!({"query": "distance", "a": ball(5.0), "b": ball(0.0)}));
+    let with = |pointer: &str, value: Value| {
+        let mut line = plain.clone();
+        let (object, name) = pointer.rsplit_once('/').expect("a place");
+        line.pointer_mut(object).expect("an object")[name] = value;
+        line
+    };
+    let cases = [
+        (gradient, "gradient_a"),
+        (with("/a/margin", json!(0.1)), "margin"),
+        (with("/a/of/half_height", json!(1)), "half_height"),
+        (with("/max_time", json!(1)), "max_time"),
+        (with("/answer/margin", json!(0.1)), "margin"),
+        (with("/certificate/axis", json!([1, 0])), "axis"),
+        (with("/precision", json!("f16")), "precision"),
+        (with("/a/translation", json!([5, 0, 0])), "dimension"),
+    ];
+    for (line, name) in cases {
+        let (verdict, said) = judge_line(line.to_string().as_bytes(), &meshes());
+        assert_eq!(verdict, Verdict::NotProved, "{line}");
+        assert!(said["because"].as_str().is_some_and(|why| why.contains(name)), "{said} should name {name}");
+    }
+}
+
 /// Planes that lean prove less of a distance than the one that it is attained across.
 #[test]
 fn a_plane_that_leans_proves_no_bracket() {
@@ -177,7 +344,7 @@ fn what_robots_are_free_of_and_what_they_meet_is_proved() {
     for _ in 0..48 {
         let query = query(ROBOTS, &mut rng);
         let Some(line) = certified(query.to_string().as_bytes(), &meshes()) else { continue };
-        let (known, said) = judge_line(1, &line, &meshes());
+        let (known, said) = judge_line(&line, &meshes());
         assert_eq!(said["parts_not_proved"], json!(0), "{said} of {query}");
         parts += said["parts_proved"].as_u64().unwrap_or(0);
         let mut line: Value = serde_json::from_slice(&line).expect("JSON");
@@ -233,6 +400,22 @@ fn damaged_contacts(line: &Value) -> Vec<Value> {
         let far = values.iter().map(|value| json!(value.as_f64().expect("a number") + 10.0)).collect();
         with(&[("answer", "values", far)]);
     }
+    if answer.get("free").is_some() {
+        // At times that are not on the path, and not within the bracket.
+        with(&[("answer", "upper", json!(8.0))]);
+        with(&[("answer", "lower", json!(-2)), ("answer", "time", json!(-1))]);
+        with(&[("answer", "time", json!(0.5 * answer["lower"].as_f64().expect("a time") - 0.1))]);
+        with(&[("answer", "certain", json!(false))]);
+        with(&[("answer", "free", json!(true))]);
+        with(&[("answer", "link", json!(1000))]);
+        for name in ["point", "normal"] {
+            if let Some(first) = answer[name][0].as_f64() {
+                let mut moved = answer[name].clone();
+                moved[0] = json!(first + 0.5 * (1.0 + first.abs()));
+                with(&[("answer", name, moved)]);
+            }
+        }
+    }
     if let Some(lower) = answer["lower"].as_f64().filter(|lower| *lower > 0.0) {
         // Too early, and not before a time that is too late.
         let early = json!(0.5 * lower);
@@ -270,7 +453,7 @@ fn of_contacts_at_the_same_time_one_is_proved() {
     line["joints"] = json!([{"type": "prismatic", "parent": -1, "axis": [1, 0]}]);
     line["obstacles"] = json!([{"type": "half_space", "normal": [-1, 0], "offset": -3}]);
     let line = answered(&line);
-    let (verdict, said) = judge_line(1, line.to_string().as_bytes(), &meshes());
+    let (verdict, said) = judge_line(line.to_string().as_bytes(), &meshes());
     assert_eq!((verdict, &line["answer"]["certain"]), (Verdict::NotProved, &json!(false)), "{line}");
     assert!(said["because"].as_str().is_some_and(|why| why.contains("within rounding")), "{said}");
 }
@@ -297,7 +480,7 @@ fn what_cannot_be_read_is_not_proved() {
         r#"{"query":"intersect","a":{"type":"ball","radius":-1},"b":{"type":"ball","radius":1},"answer":{"overlap":true},"certificate":{}}"#.to_owned(),
     ];
     for line in lines {
-        let (verdict, said) = judge_line(1, line.as_bytes(), &meshes());
+        let (verdict, said) = judge_line(line.as_bytes(), &meshes());
         assert_eq!(verdict, Verdict::NotProved, "{line}");
         assert!(said["because"].is_string(), "{said}");
     }

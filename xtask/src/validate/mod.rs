@@ -194,7 +194,7 @@ pub fn run(scope: &Scope, chapters: &[Chapter]) -> ExitCode {
     }
 }
 
-/// Whether everything was right.
+/// Whether everything was right, or there was nobody to tell.
 fn validate(scope: &Scope, chapters: &[Chapter]) -> Result<bool, String> {
     let embedded;
     let files = if scope.files.is_empty() {
@@ -230,8 +230,9 @@ fn validate(scope: &Scope, chapters: &[Chapter]) -> Result<bool, String> {
         writeln!(output, "report: {}", page.display())
     });
     match written {
-        Err(why) if why.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot write the report: {why}")),
-        _ => Ok(records.iter().all(|r| r.verdict.wrong.is_empty())),
+        Err(why) if why.kind() == io::ErrorKind::BrokenPipe => Ok(true),
+        Err(why) => Err(format!("cannot write the report: {why}")),
+        Ok(()) => Ok(records.iter().all(|r| r.verdict.wrong.is_empty())),
     }
 }
 
@@ -284,7 +285,7 @@ fn validate_line(text: &[u8], object: &Result<Object, Problem>, line: u64, file:
     let question = object.as_ref().map_err(Clone::clone).and_then(|object| engine::question(object, meshes));
     let outcome = question.as_ref().map_err(Clone::clone).and_then(|question| question.ask());
     let time = question.ok().filter(|_| outcome.is_ok()).map(|question| question.time(MICROSECONDS));
-    let answer = as_read(Line { id: Value::Null, line, outcome });
+    let answer = as_read(Line { id: None, line, outcome });
     let mut verdict =
         case.as_ref().map_or_else(|| score::judge_unreadable(&answer), |case| score::judge(case, &answer));
     if let Ok(object) = object {

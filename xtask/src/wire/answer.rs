@@ -2,7 +2,7 @@
 
 use convex_support::{Scalar, Vector};
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
-use serde_json::Value;
+use serde_json::value::RawValue;
 
 use super::error::Problem;
 use super::fields::Object;
@@ -138,8 +138,8 @@ impl Serialize for Answer {
 /// One line of output.
 #[derive(Debug)]
 pub struct Line {
-    /// What the query calls itself; the number of its line otherwise.
-    pub id: Value,
+    /// What the query calls itself, as it is written; the number of its line otherwise.
+    pub id: Option<Box<RawValue>>,
     /// The line in its file, counted from 1.
     pub line: u64,
     pub outcome: Result<Answer, Problem>,
@@ -148,7 +148,10 @@ pub struct Line {
 impl Serialize for Line {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("id", &self.id)?;
+        match &self.id {
+            Some(id) => map.serialize_entry("id", id)?,
+            None => map.serialize_entry("id", &self.line)?,
+        }
         match &self.outcome {
             Ok(answer) => {
                 for (name, field) in &answer.fields {

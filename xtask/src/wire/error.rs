@@ -73,6 +73,12 @@ impl Problem {
                 Kind::InvalidShape,
                 format!("{} is {value}, but must be greater than zero", item(parameter, index, is_lone(parameter))),
             ),
+            InvalidShape::NoDirection { parameter } => Self::new(
+                Kind::InvalidShape,
+                format!(
+                    "{place}.{parameter} must have a direction, but is zero, or too short or long for the precision"
+                ),
+            ),
             InvalidShape::NoPoints => {
                 Self::new(Kind::InvalidShape, format!("{place}.points is empty, but must be 1 or more points"))
             }

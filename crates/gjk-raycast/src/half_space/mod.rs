@@ -34,7 +34,7 @@ impl<V: Vector> HalfSpace<V> {
     /// length.
     ///
     /// # Errors
-    /// [`InvalidShape::NonFinite`] if a number is not finite, [`InvalidShape::NotPositive`] if the normal is zero or so
+    /// [`InvalidShape::NonFinite`] if a number is not finite, [`InvalidShape::NoDirection`] if the normal is zero or so
     /// long or short that its length is not a number of full precision.
     pub fn new(normal: V, offset: V::Scalar) -> Result<Self, InvalidShape> {
         if let Some(index) = (0..V::DIM).find(|&i| !normal.get(i).is_finite()) {
@@ -45,7 +45,7 @@ impl<V: Vector> HalfSpace<V> {
         }
         let length = normal.norm();
         if !(length >= V::Scalar::min_positive_value() / V::Scalar::EPSILON && length.is_finite()) {
-            return Err(InvalidShape::NotPositive { parameter: "normal", index: 0, value: length.as_f64() });
+            return Err(InvalidShape::NoDirection { parameter: "normal" });
         }
         Ok(Self { normal, offset, length })
     }

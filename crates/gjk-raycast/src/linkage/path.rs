@@ -1,6 +1,6 @@
 //! Whether a linkage touches anything along a path.
 
-use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Core, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::error::LinkageError;
@@ -255,6 +255,17 @@ impl<S: SupportMap> Linkage<S> {
         let mut cast = cast_to(to - from)?;
         if !cast.is_certain() && to - from < whole {
             cast = cast_to(whole)?;
+        }
+        // Where the joints' values leave less than half of the digits of the pose, that the bodies seem to touch, within
+        // rounding, says nothing.
+        if let Outcome::Hit(hit) = cast.outcome
+            && !cast.is_certain()
+        {
+            let Core { origin, extent, radius, .. } = shape.core();
+            let reach = origin.norm() + extent + radius;
+            if !(motion.at(hit.time).1.error_of(reach) <= ScalarOf::<S>::EPSILON.sqrt() * reach) {
+                cast.outcome = Outcome::Undecided;
+            }
         }
         // The sum with the start of the part is rounded.
         let room = if from == Scalar::ZERO { from } else { Scalar::EPSILON };

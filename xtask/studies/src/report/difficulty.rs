@@ -102,7 +102,7 @@ fn measure(case: &Case, method: Option<&str>) -> Option<(f64, f64)> {
         object.insert("method".to_owned(), Value::from(method));
     }
     let answer = engine::question(&object, &case.meshes).ok()?.ask().ok()?;
-    let answer = as_read(Line { id: Value::Null, line: 0, outcome: Ok(answer) });
+    let answer = as_read(Line { id: None, line: 0, outcome: Ok(answer) });
     let verdict = score::judge(&object, &answer);
     let query = object.get("query").and_then(Value::as_str)?;
     let relative = verdict.relative?;

@@ -246,7 +246,7 @@ fn measure(ladder: &Ladder, cases: &[&Case], method: &str, precision: &str, rung
         object.insert(ladder.knob.to_owned(), Value::from(rung));
         let Ok(question) = engine::question(&object, &case.meshes) else { continue };
         let Ok(answer) = question.ask() else { continue };
-        let answer = as_read(Line { id: Value::Null, line: 0, outcome: Ok(answer) });
+        let answer = as_read(Line { id: None, line: 0, outcome: Ok(answer) });
         let verdict = score::judge(&object, &answer);
         // A wrong flag is as wrong as can be.
         errors.push(verdict.relative.unwrap_or(1.0));

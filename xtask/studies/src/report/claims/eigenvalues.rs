@@ -40,7 +40,7 @@ fn eigenvalue(cases: &[Case]) -> Option<Claim> {
             let mut object = case.object.clone();
             object.insert("method".to_owned(), method.into());
             let outcome = engine::question(&object, &case.meshes).and_then(|question| question.ask());
-            let answer = as_read(Line { id: Value::Null, line: 0, outcome });
+            let answer = as_read(Line { id: None, line: 0, outcome });
             let verdict = score::judge(&object, &answer);
             let stiff = usize::from(condition > 1e4);
             worst[stiff][k] = worst[stiff][k].max(if verdict.errored { 1.0 } else { verdict.relative.unwrap_or(0.0) });
