@@ -124,6 +124,8 @@ pub use interop_parry::parry3d;
 pub use interop_parry::parry3d_f64;
 #[doc(hidden)]
 pub use line_crossing::lanes::{LINES, Lines};
+#[doc(hidden)]
+pub use line_crossing::{Close, CloseLine};
 pub use line_crossing::{CertainCrossing, CrossedByLine, Crossing, LineCrossing, LineQuery, line_crossing};
 pub use motion_derivative::{MotionGradient, MotionHessian};
 pub use parallelotope::Parallelotope;

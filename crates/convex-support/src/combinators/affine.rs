@@ -4,13 +4,13 @@ use num_traits::Float as _;
 
 use super::placement::{Placement, is_near, length_of_error, lost_in_origin};
 use crate::error::{InvalidShape, finite, finite_matrix};
-use crate::line_crossing::NearLine;
+use crate::line_crossing::{NearLine, closely};
 use crate::numerics::bound::roundings;
 use crate::numerics::range::power_of_two_below;
 use crate::numerics::twofold::dot_minus;
 use crate::support::{ScalarOf, sum_of_hessians, swept, swept_hessian};
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Matrix, Parallelotope,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Matrix, Parallelotope,
     Rounding, Scalar, SupportMap, Vector,
 };
 
@@ -161,6 +161,9 @@ impl<S: SupportMap> SupportMap for Affine<S> {
     /// origin `uD`.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
+        if line.is_close {
+            return closely(self, line);
+        }
         let (inverse, zero) = (self.inverse?, ScalarOf::<S>::ZERO);
         let (core, image) = (self.shape.core(), self.core());
         let radius = match self.scale {
@@ -199,6 +202,11 @@ impl<S: SupportMap> SupportMap for Affine<S> {
             let normal = inverse.transpose_mul(normal);
             normal.unit().unwrap_or(normal)
         }))
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        let (map, size) = ((&self.matrix, self.translation), self.shape.core().size());
+        line.mapped(map, size, self.scale, |line| self.shape.close_crossing(line))
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {

@@ -9,7 +9,7 @@
 mod ball;
 mod capsule;
 mod certain;
-pub(crate) mod closely;
+mod closely;
 mod cone;
 mod cuboid;
 mod cylinder;
@@ -24,6 +24,8 @@ mod turned;
 use num_traits::Float as _;
 
 pub(crate) use ball::ball;
+pub(crate) use closely::closely;
+pub use closely::{Close, CloseLine};
 pub(crate) use capsule::Spine;
 pub use certain::{CertainCrossing, LineQuery};
 pub(crate) use certain::{NearLine, skew};

@@ -4,7 +4,7 @@ use crate::error::{InvalidShape, non_negative};
 use crate::line_crossing::{NearLine, ball, closely, lanes};
 use crate::support::swept;
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Lines, Rounding, Scalar, SupportMap,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Lines, Rounding, Scalar, SupportMap,
     Vector,
 };
 
@@ -63,11 +63,15 @@ impl<V: Vector> SupportMap for Ball<V> {
 
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
-        let line = line.sweeping(self.radius);
         if line.is_close {
-            return closely::capsule(line, V::ZERO, V::Scalar::ZERO);
+            return closely(self, line);
         }
+        let line = line.sweeping(self.radius);
         NearLine::new(line, V::ZERO, line.radius)?.ball(line.radius)
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        line.sweeping(self.radius).capsule(V::Scalar::ZERO)
     }
 
     fn rounding(&self) -> Rounding<V> {

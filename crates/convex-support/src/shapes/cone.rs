@@ -8,7 +8,7 @@ use crate::numerics::bound::roundings;
 use crate::numerics::elementary::hypot;
 use crate::support::swept;
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap,
     Vector3,
 };
 
@@ -115,9 +115,13 @@ impl<V: Vector3> SupportMap for Cone<V> {
             return None;
         }
         if line.is_close {
-            return closely::cone(line, self);
+            return closely(self, line);
         }
         NearLine::new(line, V::ZERO, self.extent)?.cone(self)
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        line.cone(self.half_height, self.radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

@@ -10,7 +10,7 @@ use crate::numerics::elementary::hypot;
 use crate::numerics::range::is_comfortable;
 use crate::support::{swept, swept_hessian};
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap,
     Vector3,
 };
 
@@ -106,9 +106,13 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
             return None;
         }
         if line.is_close {
-            return closely::cylinder(line, self.half_height, self.radius);
+            return closely(self, line);
         }
         NearLine::new(line, V::ZERO, self.extent)?.cylinder(self.half_height, self.radius)
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        line.cylinder(self.half_height, self.radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
