@@ -11,7 +11,8 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{CertainCrossing, Crossed, LineQuery, NearLine, Spine, axis_of};
+use super::certain::cone_reach;
+use super::{CertainCrossing, Crossed, Crossing, LineQuery, NearLine, Spine, axis_of};
 use crate::numerics::bound::roundings;
 use crate::numerics::bounded::Bounded;
 use crate::numerics::elementary::hypot;
@@ -170,34 +171,44 @@ impl CloseLine {
         [self.source, self.direction].map(|v| DVec3::from_array(v.map(Bounded::middle)))
     }
 
+    /// The line from its point at a parameter: from near the shape, differences of squares keep their digits.
+    fn from(&self, at: f64) -> Self {
+        let moved = |i: usize| self.source[i] + self.direction[i] * at.into();
+        Self { source: core::array::from_fn(moved), ..*self }
+    }
+
     /// The certain answer from the first entry into a shape made larger by a length, or smaller if that is negative.
-    /// `outward` is the unit normal at a point of the surface, and the closed form in plain numbers tells along which
-    /// axis a line misses. A line that misses by less than rounding may cross the shape there; it is nearly in the plane
-    /// that touches the shape in the middle.
+    /// `outward` is the unit normal at a point of the surface, and the core `reaches` so far along an axis. The closed
+    /// form in plain numbers tells from where to count, and along which axis a line misses.
     fn known(
         &self,
-        entry: impl Fn(f64) -> First,
+        entry: impl Fn(&Self, f64) -> First,
         outward: impl Fn(DVec3) -> DVec3,
-        crossed: impl FnOnce(DVec3, DVec3) -> Crossed<DVec3>,
+        crossed: impl Fn(DVec3, DVec3) -> Crossed<DVec3>,
+        reaches: impl Fn(DVec3) -> f64,
     ) -> Close {
-        let larger = entry(self.error);
-        let smaller = if self.error > 0.0 { entry(-self.error) } else { larger };
         let [source, direction] = self.plain();
+        let found = crossed(source, direction);
+        let foot = || -source.dot(direction) / direction.length_squared();
+        let base = found.map_or_else(|_| foot(), |crossing| crossing.entry);
+        let line = self.from(base);
+        let [source, _] = line.plain();
+        let larger = entry(&line, self.error);
+        let smaller = if self.error > 0.0 { entry(&line, -self.error) } else { larger };
         if larger.earliest == f64::INFINITY {
-            let axis = crossed(source, direction).map_or_else(
-                |axis| axis,
-                |crossing| {
-                    let normal = outward(source + direction * (crossing.entry + crossing.exit) * 0.5);
-                    normal - direction * (normal.dot(direction) / direction.length_squared())
-                },
-            );
-            return (axis.length_squared() > 0.0).then_some(CertainCrossing::Misses(axis));
+            // By rounding alone the line may cross the shape, but then it misses a smaller one: that is, one farther
+            // out misses the shape. An axis along which they are not apart to rounding tells nothing.
+            let axis = found.err().or_else(|| crossed(source * (1.0 + 32.0 * f64::EPSILON), direction).err())?;
+            let ahead = axis.dot(source) - reaches(axis) - self.radius.middle() * axis.length();
+            let is_apart = ahead >= -64.0 * f64::EPSILON * axis.length() && axis.length_squared() > 0.0;
+            return is_apart.then_some(CertainCrossing::Misses(axis));
         }
-        let bounds = [larger.earliest, smaller.latest];
+        let bounds = [base + larger.earliest, base + smaller.latest];
         // NaN and infinity prove nothing.
         let is_known = bounds[0] > f64::NEG_INFINITY && bounds[1] < f64::INFINITY;
-        let entry = bounds[0] + (bounds[1] - bounds[0]) * 0.5;
-        is_known.then(|| CertainCrossing::Enters { entry, bounds, normal: outward(source + direction * entry) })
+        let entry = larger.earliest + (smaller.latest - larger.earliest) * 0.5;
+        let normal = outward(source + direction * entry);
+        is_known.then_some(CertainCrossing::Enters { entry: base + entry, bounds, normal })
     }
 
     /// A segment about zero along the second axis, swept by a ball, or a ball.
@@ -208,16 +219,16 @@ impl CloseLine {
         let [_, direction] = self.plain();
         let outward = |at: DVec3| (at - at.max(-end).min(end)).try_normalize().unwrap_or(-direction.normalize_or_zero());
         let crossed = |source, direction| Spine::upright(half_height).crossing(radius, source, direction);
-        let entry = |by: f64| {
-            let radius = self.radius + by.into();
+        let entry = |line: &Self, by: f64| {
+            let radius = line.radius + by.into();
             let mut first = First::NONE;
-            first.take(self.slab(1, half_height.into()).and(self.disc([true, false, true], [0.0; 3], radius)));
+            first.take(line.slab(1, half_height.into()).and(line.disc([true, false, true], [0.0; 3], radius)));
             for end in [half_height, -half_height] {
-                first.take(self.disc([true; 3], [0.0, end, 0.0], radius));
+                first.take(line.disc([true; 3], [0.0, end, 0.0], radius));
             }
             first
         };
-        self.known(entry, outward, crossed)
+        self.known(entry, outward, crossed, |axis| half_height * axis.y.abs())
     }
 
     /// A cylinder about the second axis, not swept by a ball.
@@ -228,14 +239,14 @@ impl CloseLine {
             across(at).try_normalize().filter(|_| !is_beyond_lid).unwrap_or(DVec3::Y.copysign(at))
         };
         let crossed = |source, direction| super::cylinder(half_height, radius, source, direction);
-        let entry = |by: f64| {
-            let disc = self.disc([true, false, true], [0.0; 3], Bounded::sum(radius, by));
+        let entry = |line: &Self, by: f64| {
+            let disc = line.disc([true, false, true], [0.0; 3], Bounded::sum(radius, by));
             let mut first = First::NONE;
-            first.take(self.slab(1, Bounded::sum(half_height, by)).and(disc));
+            first.take(line.slab(1, Bounded::sum(half_height, by)).and(disc));
             first
         };
         self.is_not_swept()?;
-        self.known(entry, outward, crossed)
+        self.known(entry, outward, crossed, |axis| half_height * axis.y.abs() + radius * across(axis).length())
     }
 
     /// `None` if the shape is swept by a ball.
@@ -257,7 +268,8 @@ impl CloseLine {
         };
         let crossed = |source, direction| super::cone(&shape, source, direction);
         self.is_not_swept()?;
-        self.known(|by| self.in_cone(half_height, radius, by), outward, crossed)
+        let entry = |line: &Self, by| line.in_cone(half_height, radius, by);
+        self.known(entry, outward, crossed, |axis| cone_reach(&shape, axis))
     }
 
     /// The cone is behind its base and below its apex, where `4h²·(x² + z²) ≤ r²·(h − y)²`. Each of its planes is moved
@@ -306,7 +318,8 @@ impl CloseLine {
                 super::cuboid(prism, source, direction)
             }
         };
-        self.known(|by| self.in_rounded_box(half.to_array(), V::DIM, is_swept, by), outward, crossed)
+        let entry = |line: &Self, by| line.in_rounded_box(half.to_array(), V::DIM, is_swept, by);
+        self.known(entry, outward, crossed, |axis| axis.abs().dot(prism))
     }
 
     /// A box swept by a ball: the boxes that are longer by the radius along one axis, the edges swept by a ball, and
@@ -349,34 +362,35 @@ impl CloseLine {
     /// smaller ellipsoid that is not empty.
     pub(crate) fn ellipsoid<V: Vector>(&self, semi_axes: V) -> Close {
         let axis = |i: usize| Bounded::from(if i < V::DIM { self.in_units(semi_axes.get(i)) } else { 1.0 });
-        let onto_ball = |v: [Bounded; 3]| core::array::from_fn(|i| v[i] / axis(i));
-        let line = Self { source: onto_ball(self.source), direction: onto_ball(self.direction), ..*self };
-        let [source, direction] = line.plain();
         let inverse = DVec3::from_array(core::array::from_fn(|i| axis(i).middle().recip()));
-        let normal = match line.disc([true; 3], [0.0; 3], Bounded::from(1.0)) {
-            Stretch { enters: [early, late], .. } if (late - early).is_finite() => source + direction * late,
-            _ => source - direction * (source.dot(direction) / direction.length_squared()),
+        let crossed = |source: DVec3, direction: DVec3| {
+            super::ball(1.0, source * inverse, direction * inverse).map_err(|axis| axis * inverse)
+        };
+        let [source, direction] = self.plain();
+        // The normal of the ball that it is.
+        let normal = match crossed(source, direction) {
+            Ok(Crossing { normal, .. }) => normal,
+            Err(axis) => (axis / inverse).normalize_or_zero(),
         };
         let moved = inverse * self.error;
         let largest = moved.max_element();
-        let wanted = (moved * normal.normalize_or_zero()).length();
+        let part = (moved * normal).length();
         let one = Bounded::from(1.0);
-        let entry = |by: f64| {
-            let squared = |i: usize| {
+        let entry = |line: &Self, by: f64| {
+            let part = Bounded::from(if by < 0.0 { part.max(4.0 * largest * largest) } else { part });
+            let squared: [Bounded; 3] = core::array::from_fn(|i| {
                 if by == 0.0 {
                     return one;
                 }
-                let part = Bounded::from(if by < 0.0 { wanted.max(4.0 * largest * largest) } else { wanted });
                 let moved = (Bounded::from(by) / axis(i)).squared() * (one + one / part);
                 if by > 0.0 { one + part + moved } else { (one - moved) / (one + part) }
-            };
+            });
             let mut first = First::NONE;
-            if (0..3).all(|i| squared(i).is_positive()) {
-                let zero = Bounded::from(0.0);
+            if squared.iter().all(|squared| squared.is_positive()) {
+                let [v, w] = [line.direction, line.source].map(|v| [0, 1, 2].map(|i| v[i] / axis(i)));
                 let product = |v: [Bounded; 3], w: [Bounded; 3]| {
-                    (0..3).fold(zero, |sum, i| sum + v[i] * w[i] / squared(i))
+                    (0..3).fold(Bounded::from(0.0), |sum, i| sum + v[i] * w[i] / squared[i])
                 };
-                let (v, w) = (line.direction, line.source);
                 if let Quadric::Within(stretch) = quadric(product(v, v), product(v, w), product(w, w) - one) {
                     first.take(stretch);
                 }
@@ -385,7 +399,7 @@ impl CloseLine {
         };
         self.is_not_swept()?;
         let outward = |at: DVec3| (at * inverse * inverse).normalize_or_zero();
-        self.known(entry, outward, |_, _| super::ball(1.0, source, direction).map_err(|axis| axis * inverse))
+        self.known(entry, outward, crossed, |axis| (axis / inverse).length())
     }
 
     /// The stretch where `|x·eᵢ| ≤ half`.

@@ -78,12 +78,51 @@ pub(crate) fn certain_closely<B: CastBody + ?Sized>(
         let reach = (ray.source - origin).norm() + (extent + radius) + (extent + radius);
         line = line.within(direction_error * reach);
     }
-    // For a ray that begins inside, plain numbers give the entry of its line, and twice the precision takes longer than
-    // a search. In a loop, so that the inlined code is there only once.
-    let known = [false, true].into_iter().find_map(|is_close| body.certain_crossing(LineQuery { is_close, ..line }));
-    let answer = certain(known?, ray, options)?;
+    let (crossing, is_from_behind) = nearest_known(body, line)?;
+    let answer = if is_from_behind { certain_beyond(crossing, ray, options) } else { certain(crossing, ray, options) }?;
     show(&answer, body, ray, observer);
     Some(answer)
+}
+
+/// The crossing in plain numbers, or else in twice the precision; if the line enters before its source, that of the
+/// line from behind, which tells where it leaves.
+// In a loop, so that the inlined code is there only once.
+#[inline(always)]
+fn nearest_known<B: CastBody + ?Sized>(
+    body: &B,
+    mut line: LineQuery<B::Vector>,
+) -> Option<(CertainCrossing<B::Vector>, bool)> {
+    let mut is_from_behind = false;
+    loop {
+        match body.certain_crossing(line) {
+            None if line.is_close => return None,
+            None => line.is_close = true,
+            Some(CertainCrossing::Enters { bounds: [_, latest], .. }) if latest <= Scalar::ZERO && !is_from_behind => {
+                (line.direction, is_from_behind) = (-line.direction, true);
+            }
+            Some(crossing) => return Some((crossing, is_from_behind)),
+        }
+    }
+}
+
+/// The cast of a ray whose line enters the shape before its source, by the crossing of the line from behind.
+#[inline(always)]
+fn certain_beyond<V: Vector>(
+    crossing: CertainCrossing<V>,
+    ray: Ray<V>,
+    options: &RayCastOptions<V>,
+) -> Option<RayCast<V>> {
+    let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+    let (outcome, bound) = match crossing {
+        CertainCrossing::Enters { bounds: [_, latest], .. } if latest <= zero && options.max_lambda >= zero => {
+            (Outcome::Hit(RayHit { lambda: zero, point: ray.source, normal: None }), zero)
+        }
+        CertainCrossing::Enters { bounds: [earliest, _], normal, .. } if earliest > zero => {
+            (Outcome::Miss(Miss { axis: normal }), infinity)
+        }
+        _ => return None,
+    };
+    Some(RayCast { outcome, lower: bound, upper: bound, status: Status::Converged, iterations: 1 })
 }
 
 /// Shows an observer the plane of an answer.
