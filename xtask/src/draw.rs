@@ -66,7 +66,7 @@ fn decades(x: f64) -> f64 {
 }
 
 /// The query with one more field.
-fn with(mut query: Value, field: &str, value: impl Into<Value>) -> Value {
+pub(crate) fn with(mut query: Value, field: &str, value: impl Into<Value>) -> Value {
     query[field] = value.into();
     query
 }
