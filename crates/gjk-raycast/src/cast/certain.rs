@@ -58,8 +58,8 @@ pub(crate) fn certain<V: Vector>(
     Some(RayCast { outcome, lower, upper, status: Status::Converged, iterations: 1 })
 }
 
-/// The same, in plain numbers or in twice the precision, for a body and a ray whose direction may be wrong by some
-/// part of its length; an observer sees the plane of the answer.
+/// The same, in plain numbers or in twice the precision, for a body and a ray that may begin in it and whose direction
+/// may be wrong by some part of its length; an observer sees the plane of the answer.
 #[inline(always)]
 pub(crate) fn certain_closely<B: CastBody + ?Sized>(
     body: &mut B,
@@ -78,51 +78,33 @@ pub(crate) fn certain_closely<B: CastBody + ?Sized>(
         let reach = (ray.source - origin).norm() + (extent + radius) + (extent + radius);
         line = line.within(direction_error * reach);
     }
-    let (crossing, is_from_behind) = nearest_known(body, line)?;
-    let answer = if is_from_behind { certain_beyond(crossing, ray, options) } else { certain(crossing, ray, options) }?;
-    show(&answer, body, ray, observer);
-    Some(answer)
-}
-
-/// The crossing in plain numbers, or else in twice the precision; if the line enters before its source, that of the
-/// line from behind, which tells where it leaves.
-// In a loop, so that the inlined code is there only once.
-#[inline(always)]
-fn nearest_known<B: CastBody + ?Sized>(
-    body: &B,
-    mut line: LineQuery<B::Vector>,
-) -> Option<(CertainCrossing<B::Vector>, bool)> {
-    let mut is_from_behind = false;
-    loop {
+    let (zero, infinity) = (Scalar::ZERO, ScalarFrom::<B>::infinity());
+    let mut is_behind = false;
+    // In a loop, so that the inlined code is there only once.
+    let answer = loop {
         match body.certain_crossing(line) {
             None if line.is_close => return None,
             None => line.is_close = true,
-            Some(CertainCrossing::Enters { bounds: [_, latest], .. }) if latest <= Scalar::ZERO && !is_from_behind => {
-                (line.direction, is_from_behind) = (-line.direction, true);
+            // The line enters before the source; from behind it tells where it leaves.
+            Some(CertainCrossing::Enters { bounds: [_, latest], .. }) if latest <= zero && !is_behind => {
+                (line.direction, is_behind) = (-line.direction, true);
             }
-            Some(crossing) => return Some((crossing, is_from_behind)),
+            Some(crossing) if !is_behind => break certain(crossing, ray, options)?,
+            Some(CertainCrossing::Enters { bounds: [earliest, latest], normal, .. }) => {
+                let (outcome, bound) = if latest <= zero && options.max_lambda >= zero {
+                    (Outcome::Hit(RayHit { lambda: zero, point: ray.source, normal: None }), zero)
+                } else if earliest > zero {
+                    (Outcome::Miss(Miss { axis: normal }), infinity)
+                } else {
+                    return None;
+                };
+                break RayCast { outcome, lower: bound, upper: bound, status: Status::Converged, iterations: 1 };
+            }
+            Some(CertainCrossing::Misses(_)) => return None,
         }
-    }
-}
-
-/// The cast of a ray whose line enters the shape before its source, by the crossing of the line from behind.
-#[inline(always)]
-fn certain_beyond<V: Vector>(
-    crossing: CertainCrossing<V>,
-    ray: Ray<V>,
-    options: &RayCastOptions<V>,
-) -> Option<RayCast<V>> {
-    let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
-    let (outcome, bound) = match crossing {
-        CertainCrossing::Enters { bounds: [_, latest], .. } if latest <= zero && options.max_lambda >= zero => {
-            (Outcome::Hit(RayHit { lambda: zero, point: ray.source, normal: None }), zero)
-        }
-        CertainCrossing::Enters { bounds: [earliest, _], normal, .. } if earliest > zero => {
-            (Outcome::Miss(Miss { axis: normal }), infinity)
-        }
-        _ => return None,
     };
-    Some(RayCast { outcome, lower: bound, upper: bound, status: Status::Converged, iterations: 1 })
+    show(&answer, body, ray, observer);
+    Some(answer)
 }
 
 /// Shows an observer the plane of an answer.
