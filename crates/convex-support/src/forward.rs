@@ -51,6 +51,12 @@ macro_rules! forward {
             }
 
             #[inline]
+            fn close_crossing(&self, line: &$crate::CloseLine) -> $crate::Close {
+                let $this = self;
+                $inner.close_crossing(line)
+            }
+
+            #[inline]
             fn core_support_feature(
                 &self,
                 direction: $V,

@@ -127,6 +127,8 @@ pub use line_crossing::crossed_by_line::{CrossedByLine, line_crossing};
 #[doc(hidden)]
 pub use line_crossing::lanes::{LINES, Lines};
 pub use line_crossing::{CertainCrossing, Crossing, LineCrossing, LineQuery};
+#[doc(hidden)]
+pub use line_crossing::{Close, CloseLine};
 pub use motion_derivative::{MotionGradient, MotionHessian};
 pub use parallelotope::Parallelotope;
 pub use scalar::Scalar;

@@ -4,7 +4,10 @@ use num_traits::Float as _;
 
 use crate::ball_support::swept;
 use crate::numerics::bound::roundings;
-use crate::{CertainCrossing, Core, CoreKind, Feature, Hint, LineQuery, Parallelotope, Rounding, Scalar, Vector};
+use crate::{
+    CertainCrossing, Close, CloseLine, Core, CoreKind, Feature, Hint, LineQuery, Parallelotope, Rounding, Scalar,
+    Vector,
+};
 
 /// A nonempty, closed, bounded convex set, known by its support mapping.
 ///
@@ -121,6 +124,15 @@ pub trait SupportMap {
     /// in [twice the precision](LineQuery::is_close), and then they search.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>> {
+        let _ = line;
+        None
+    }
+
+    /// Its answer in twice the precision, about a line in such numbers: shapes of others are asked by this, so that a
+    /// line loses nothing on the way through poses and maps.
+    #[doc(hidden)]
+    #[inline]
+    fn close_crossing(&self, line: &CloseLine) -> Close {
         let _ = line;
         None
     }

@@ -166,6 +166,8 @@ compiled_once! {
         // Of no other pair is a crossing known.
         if cores.iter().any(|core| matches!(core.kind, CoreKind::Point(_)))
             && let Some(known) = certain_closely(body, ray, direction_error, &wanted, observer)
+            // Where bodies begin in contact, only a search or a further look has a point of both.
+            && (known.upper > Scalar::ZERO || options.extra.get().is_some())
         {
             return answer(&ObstacleCast::of_certain(&known, body, ray), [a, b], cores, motion, options);
         }

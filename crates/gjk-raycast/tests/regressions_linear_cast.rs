@@ -360,7 +360,7 @@ fn equal_velocities_hit_only_what_overlaps() {
 /// Found by the sweep: a capsule passes a ball by within rounding, which may be a hit, at the place where they are
 /// closest. The normal was that of the last plane on the way there, and the point of contact, found by it, was 0.3
 /// sizes off one of them. The shortest vector from core to core is the normal, and the point between the cores is on
-/// both.
+/// both. In twice the precision it is a miss, by 0.31, where the pose is right to 0.18.
 #[test]
 fn a_graze_has_the_normal_of_where_it_is() {
     let rotation = Quat::from_xyzw(-0.461_624_9, 0.242_144_24, 0.495_764_43, 0.694_612_3);
@@ -371,20 +371,20 @@ fn a_graze_has_the_normal_of_where_it_is() {
     let ball = Posed::translated(Ball::new(1e6).expect("positive"), center).expect("a place");
     let velocity_a = Vec3A::new(751_522.7, 437_034.44, 1_342_081.5);
     let motion = Motion { velocity_a, velocity_b: Vec3A::ZERO };
-    for method in [CastMethod::Portal, CastMethod::Gjk] {
-        let options = LinearCastOptions::new().with_method(method);
-        let cast = linear_cast(&capsule, &ball, motion, options).expect("finite");
-        let hit = cast.outcome.hit().expect("as close as rounding");
-        let normal = hit.normal.expect("they start apart").as_dvec3();
-        assert!(normal.dot(velocity_a.as_dvec3().normalize()).abs() < 1e-5, "{method:?}: {hit:?}");
-        let from_center = (hit.point - center).as_dvec3();
-        assert!((from_center.length() - 1e6).abs() < 1.0, "{method:?}: {hit:?}");
-        // On the capsule as well, to the rounding of where it comes from: an ulp of 8e9 is 512.
-        let place = start.as_dvec3() + velocity_a.as_dvec3() * f64::from(hit.time);
-        let seen = rotation.as_dquat().normalize().inverse() * (hit.point.as_dvec3() - place);
-        let from_axis = (seen - DVec3::Y * seen.y.clamp(-625e3, 625e3)).length();
-        assert!((from_axis - 375e3).abs() < 4.0 * 512.0, "{method:?}: {from_axis}");
-    }
+    let cast = linear_cast(&capsule, &ball, motion, LinearCastOptions::new()).expect("finite");
+    assert!(cast.outcome.is_miss() && cast.is_certain(), "{cast:?}");
+    let options = LinearCastOptions::new().with_method(CastMethod::Gjk);
+    let cast = linear_cast(&capsule, &ball, motion, options).expect("finite");
+    let hit = cast.outcome.hit().expect("as close as rounding");
+    let normal = hit.normal.expect("they start apart").as_dvec3();
+    assert!(normal.dot(velocity_a.as_dvec3().normalize()).abs() < 1e-5, "{hit:?}");
+    let from_center = (hit.point - center).as_dvec3();
+    assert!((from_center.length() - 1e6).abs() < 1.0, "{hit:?}");
+    // On the capsule as well, to the rounding of where it comes from: an ulp of 8e9 is 512.
+    let place = start.as_dvec3() + velocity_a.as_dvec3() * f64::from(hit.time);
+    let seen = rotation.as_dquat().normalize().inverse() * (hit.point.as_dvec3() - place);
+    let from_axis = (seen - DVec3::Y * seen.y.clamp(-625e3, 625e3)).length();
+    assert!((from_axis - 375e3).abs() < 4.0 * 512.0, "{from_axis}");
 }
 
 /// Where a line leaves the side of a segment swept by a ball, which it nearly runs along, is the difference of two

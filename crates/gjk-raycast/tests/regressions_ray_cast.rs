@@ -2,10 +2,10 @@
 //! both precisions.
 
 use crate::common::{at, cast, cuboid, directions, lambda, off, quaternion, s, turned, ulps, v};
-use convex_support::glam::{DQuat, DVec3, Vec3A};
+use convex_support::glam::{DMat3, DQuat, DVec3, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Hull, MinkowskiSum, Point, Polytope, Posed, Rounded, Scalar,
-    Segment, SupportMap, Vector3, closest_point,
+    Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Hull, MinkowskiSum, Point, Polytope, Posed, Rounded,
+    Scalar, Segment, SupportMap, Vector3, closest_point,
 };
 use gjk_raycast::{
     CastMethod, DistanceOptions, HalfSpace, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, Scene, Status,
@@ -459,7 +459,11 @@ fn an_upper_bound_of_algorithm_1_is_where_points_of_the_set_are_all_around() {
     };
     let ray = Ray { source: DVec3::new(0.0, 0.125, 4.0), direction: DVec3::NEG_Z };
     let cast = iterative_ray_cast(closest, ray, RayCastOptions::default()).expect("finite");
-    assert_eq!((cast.outcome.is_hit(), cast.is_certain(), cast.status), (true, false, Status::Stalled), "{cast:?}");
+    assert_eq!(
+        (cast.outcome.hit().is_some(), cast.is_certain(), cast.status),
+        (true, false, Status::Stalled),
+        "{cast:?}"
+    );
 }
 
 /// Where a ray grazes within rounding, the answer was a hit that had `Converged`, and only an infinite bound told
@@ -472,7 +476,7 @@ fn a_hit_that_may_be_a_miss_has_not_converged() {
         let graze = Ray { source: v::<V>([-5.0, 1.0, 0.0]), direction: v([1.0, 0.0, 0.0]) };
         let stalled = |is_certain: bool, status: Status| !is_certain && status == Status::Stalled;
         let cast = ray_cast(&pebble, graze, RayCastOptions::default()).expect("finite");
-        assert!(cast.outcome.is_hit() && stalled(cast.is_certain(), cast.status), "{cast:?}");
+        assert!(cast.outcome.hit().is_some() && stalled(cast.is_certain(), cast.status), "{cast:?}");
         let exit = ray_exit(&pebble, graze, RayCastOptions::default()).expect("finite");
         assert!(exit.outcome.is_hit() && stalled(exit.is_certain(), exit.status), "{exit:?}");
         let late = ray_cast(&pebble, graze, RayCastOptions::new().with_min_lambda(s::<V>(5.0))).expect("finite");
@@ -482,7 +486,7 @@ fn a_hit_that_may_be_a_miss_has_not_converged() {
         let [a, b] = [0.0, 2.0].map(|y| at(cuboid::<V>([1.0; 3]), [2.5 * y, y, 0.0]));
         let motion = Motion { velocity_a: v::<V>([1.0, 0.0, 0.0]), velocity_b: V::ZERO };
         let cast = linear_cast(&a, &b, motion, LinearCastOptions::default()).expect("finite");
-        assert!(cast.outcome.is_hit() && stalled(cast.is_certain(), cast.status), "{cast:?}");
+        assert!(cast.outcome.hit().is_some() && stalled(cast.is_certain(), cast.status), "{cast:?}");
         let floor = HalfSpace::new(v::<V>([0.0, 1.0, 0.1]), s::<V>(1.0)).expect("a plane");
         let ray = Ray { source: v::<V>([0.0, 1.0, 0.0]), direction: v([1.0, 0.1, -1.0]) };
         let cast = floor.ray_cast(ray, RayCastOptions::default()).expect("finite");
@@ -566,4 +570,65 @@ fn second_looks_are_few_and_count() {
         assert!(most[0] <= 200 && most[1] <= 60, "{most:?}");
     }
     both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Points of an ellipsoid with coordinates that are integers: `(2m, m² − 1)` on the circle of radius `m² + 1`, which is
+/// stretched by powers of two. So the true parameters are integers too.
+#[test]
+fn rays_at_the_tips_of_needles_are_certain() {
+    let (mut asked, mut steps) = (0, 0);
+    for stretch in (6..=23).map(|k| f64::from(1 << k)) {
+        for m in [2.0, 7.0, 30.0, 111.0, 500.0] {
+            let (width, tip) = (m * m + 1.0, DVec3::new(2.0 * m, (m * m - 1.0) * stretch, 0.0));
+            let semi_axes = DVec3::new(width, width * stretch, width);
+            let needle = Ellipsoid::new(DVec3::ZERO, semi_axes, DQuat::IDENTITY).expect("a needle");
+            let ball = Ball::new(1.0).expect("a ball");
+            let image = Affine::new(ball, DMat3::from_diagonal(semi_axes), DVec3::ZERO).expect("an image");
+            let shift = DVec3::new(-64.0, 1024.0, 4096.0);
+            let moved = Posed::translated(image, shift).expect("an image");
+            for along in [[-1, 0, 0], [0, -1, 0], [-3, -2, 1], [1, -5, 7], [-1, 1, 0], [-40, 9, -11]] {
+                let direction = DVec3::from(along.map(f64::from)) * if along[1] > 0 { 1.0 } else { 1024.0 };
+                let out = tip / semi_axes / semi_axes;
+                if out.dot(direction) >= 0.0 {
+                    continue;
+                }
+                let ray = |by: f64, shift| Ray { source: tip - direction * by + shift, direction };
+                for by in [1.0, 8.0, 4096.0] {
+                    let casts = [
+                        ray_cast(&needle, ray(by, DVec3::ZERO), RayCastOptions::default()).expect("a ray"),
+                        ray_cast(&image, ray(by, DVec3::ZERO), RayCastOptions::default()).expect("a ray"),
+                        ray_cast(&moved, ray(by, shift), RayCastOptions::default()).expect("a ray"),
+                    ];
+                    for cast in casts {
+                        assert!(cast.lower <= by && by <= cast.upper, "{stretch} {m} {along:?} {by} {cast:?}");
+                        assert!(
+                            cast.is_certain() && cast.outcome.hit().is_some(),
+                            "{stretch} {m} {along:?} {by} {cast:?}"
+                        );
+                        (asked, steps) = (asked + 1, steps.max(cast.iterations));
+                    }
+                }
+            }
+        }
+    }
+    assert!(asked > 2000 && steps <= 64, "{steps} steps of {asked} rays");
+}
+
+/// Near the side of a needle a line enters and leaves far from its source, and rounding decided nothing.
+#[test]
+fn a_ray_that_begins_within_a_needle_is_a_certain_hit() {
+    let needle = Cylinder::<DVec3>::new(6480.0, 0.75).expect("a needle");
+    let cone = Cone::<DVec3>::new(9372.0, 1.0).expect("a needle");
+    for aside in [0.25, 0.5, 0.7499, 0.75] {
+        let direction = DVec3::new(1e-5, -1.0, -3e-6);
+        let from = |y: f64| Ray { source: DVec3::new(-aside, y, 0.0), direction };
+        let cast = ray_cast(&needle, from(-6000.0), RayCastOptions::default()).expect("a ray");
+        assert!(cast.outcome.hit().is_some() && cast.upper == 0.0, "{aside} {cast:?}");
+        let cast = ray_cast(&cone, from(-9000.0), RayCastOptions::default()).expect("a ray");
+        assert!(cast.outcome.hit().is_some() && cast.upper == 0.0, "{aside} {cast:?}");
+    }
+    // Behind the source.
+    let ray = Ray { source: DVec3::new(-0.7, -6481.0, 0.0), direction: DVec3::new(1e-5, -1.0, 0.0) };
+    let cast = ray_cast(&needle, ray, RayCastOptions::default()).expect("a ray");
+    assert!(cast.outcome.is_miss() && cast.is_certain(), "{cast:?}");
 }

@@ -2,6 +2,7 @@
 
 pub mod cases;
 mod headline;
+pub mod needles;
 pub mod page;
 mod progress;
 mod report;
@@ -18,6 +19,7 @@ use std::sync::Arc;
 use clap::Args;
 use serde_json::Value;
 
+use self::needles::Needles;
 use self::page::Section;
 pub use self::progress::{begin as begin_progress, end as end_progress, progress};
 use self::score::Verdict;
@@ -112,11 +114,12 @@ pub struct Material<'a> {
     pub scope: &'a Scope,
     pub records: &'a [Record],
     pub cases: &'a [Case],
+    pub needles: &'a Needles,
 }
 
 /// The chapters of a quick run; the others are studies.
 pub const QUICK: [Chapter; 2] = [
-    Chapter { name: "stiff", write: |material| stiff::section(material.records) },
+    Chapter { name: "stiff", write: |material| stiff::section(material.records, material.needles) },
     Chapter { name: "cases", write: |material| cases::section(material.records) },
 ];
 
@@ -213,7 +216,14 @@ fn validate(scope: &Scope, chapters: &[Chapter]) -> Result<bool, String> {
     if records.is_empty() {
         return Err("there is nothing to validate".to_owned());
     }
-    let material = Material { scope, records: &records, cases: &cases };
+    let needles = if scope.files.is_empty() && !scope.quick && scope.shows("stiff") {
+        progress("needles and plates");
+        Needles::ask(scope)
+    } else {
+        Needles::default()
+    };
+    records.extend(needles.records());
+    let material = Material { scope, records: &records, cases: &cases, needles: &needles };
     let first = scope.is_whole().then(|| headline::headline(&records));
     let mut sections = Vec::new();
     for chapter in chapters {

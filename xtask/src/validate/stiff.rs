@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
+use super::needles::Needles;
 use super::page::{Block, Row, Section, Table, error};
 use super::score::called;
 use super::{Record, score};
@@ -13,11 +14,13 @@ use crate::table::{aligned, quantile};
 
 /// The chapter: a row for every kind of difficulty, and folded one for each of its values.
 #[must_use]
-pub fn section(records: &[Record]) -> Section {
+pub fn section(records: &[Record], needles: &Needles) -> Section {
     let groups = groups(records);
     let hard: Vec<&Record> = records.iter().filter(|r| r.tags.iter().any(|tag| difficulty(tag).is_some())).collect();
-    let blocks =
-        if groups.is_empty() { Vec::new() } else { vec![Block::Table(kinds(&groups)), Block::Table(values(&groups))] };
+    let mut blocks: Vec<Block> = needles.table().map(Block::Table).into_iter().collect();
+    if !groups.is_empty() {
+        blocks.extend([kinds(&groups), values(&groups)].map(Block::Table));
+    }
     Section {
         id: "stiff",
         title: "Stiff and extreme cases",
@@ -245,7 +248,7 @@ mod tests {
             time: None,
             iterations: Some(7),
         };
-        let said = |records: &[Record]| section(records).lead;
+        let said = |records: &[Record]| section(records, &Needles::default()).lead;
         let right = said(&[record(&[], &[], 0.25)]);
         assert!(right.contains("of 1 answers none is wrong, and of none the bounds fail"), "{right}");
         assert!(right.contains("2.5e-1 of what the inputs allow, and the most iterations are 7"), "{right}");

@@ -6,14 +6,15 @@ use super::placement::{Placement, is_near, length_of_error, lost_in_origin};
 use crate::ball_support::{swept, swept_hessian};
 use crate::error::{InvalidShape, finite, finite_matrix};
 use crate::line_crossing::NearLine;
+use crate::line_crossing::crossed_by_line::closely;
 use crate::numerics::bound::roundings;
 use crate::numerics::range::power_of_two_below;
 use crate::numerics::twofold::dot_minus;
 use crate::support::{ScalarOf, sum_of_hessians};
 use crate::support_feature::across;
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Matrix, Parallelotope,
-    Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Matrix,
+    Parallelotope, Rounding, Scalar, SupportMap, Vector,
 };
 
 /// A shape under an affine map: scaled, sheared, mirrored, or, if the matrix is singular, flattened.
@@ -163,6 +164,9 @@ impl<S: SupportMap> SupportMap for Affine<S> {
     /// origin `uD`.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
+        if line.is_close {
+            return closely(self, line);
+        }
         let (inverse, zero) = (self.inverse?, ScalarOf::<S>::ZERO);
         let (core, image) = (self.shape.core(), self.core());
         let radius = match self.scale {
@@ -201,6 +205,11 @@ impl<S: SupportMap> SupportMap for Affine<S> {
             let normal = inverse.transpose_mul(normal);
             normal.unit().unwrap_or(normal)
         }))
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        let (map, size) = ((&self.matrix, self.translation), self.shape.core().size());
+        line.mapped(map, size, self.scale, |line| self.shape.close_crossing(line))
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {

@@ -2,12 +2,13 @@
 
 use num_traits::Float as _;
 
+use crate::line_crossing::crossed_by_line::closely;
 use crate::numerics::bound::{roundings, roundings_of};
 use crate::numerics::twofold::{lost_in_sum, two_sum};
 use crate::support::{ScalarOf, sum_of_hessians, support_of_parts};
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar,
-    SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Parallelotope,
+    Rounding, Scalar, SupportMap, Vector,
 };
 
 /// The set `A + B = { a + b : a ∈ A, b ∈ B }`: one shape swept by the other. Nest it for more than two.
@@ -98,6 +99,9 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
     /// Known if one of the cores is a point.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<A::Vector>) -> Option<CertainCrossing<A::Vector>> {
+        if line.is_close {
+            return closely(self, line);
+        }
         let (a, b) = (self.a.core(), self.b.core());
         // The point has an error.
         let from =
@@ -105,6 +109,18 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
         match (a.kind, b.kind) {
             (CoreKind::Point(at), _) => self.b.certain_crossing(from(a, at)),
             (_, CoreKind::Point(at)) => self.a.certain_crossing(from(b, at)),
+            _ => None,
+        }
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        let (a, b) = (self.a.core(), self.b.core());
+        let from = |point: Core<A::Vector>, at| {
+            line.seen_from(point.origin).seen_from(at).within(point.error).sweeping(point.radius)
+        };
+        match (a.kind, b.kind) {
+            (CoreKind::Point(at), _) => self.b.close_crossing(&from(a, at)),
+            (_, CoreKind::Point(at)) => self.a.close_crossing(&from(b, at)),
             _ => None,
         }
     }

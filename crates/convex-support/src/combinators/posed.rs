@@ -6,13 +6,14 @@ use num_traits::Float as _;
 
 use super::placement::{Placement, is_near, length_of_error, lost_in_origin};
 use crate::error::{InvalidShape, finite, orthonormal};
-use crate::line_crossing::{NearLine, Turned, closely, lanes, skew};
+use crate::line_crossing::crossed_by_line::closely;
+use crate::line_crossing::{NearLine, Turned, lanes, skew};
 use crate::numerics::bound::roundings;
 use crate::numerics::twofold::lost_in_sum;
 use crate::support::ScalarOf;
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines, Matrix,
-    Parallelotope, Rotation, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines,
+    Matrix, Parallelotope, Rotation, Rounding, Scalar, SupportMap, Vector,
 };
 
 /// The image `R·C + t` of a shape under a rotation and then a translation.
@@ -240,21 +241,27 @@ impl<S: SupportMap> SupportMap for Posed<S> {
 
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
+        if line.is_close {
+            return closely(self, line);
+        }
         let core = self.shape.core();
         let line = line.within(self.error + self.skew);
         let size = core.size() + line.radius;
         // A ball, whichever way it is turned.
         if core.origin == S::Vector::ZERO && core.kind == CoreKind::Point(S::Vector::ZERO) {
             let line = line.sweeping(core.radius);
-            if line.is_close {
-                return closely::capsule(line, self.translation, ScalarOf::<S>::ZERO);
-            }
             return NearLine::new(line, self.translation, size)?.ball(line.radius);
         }
         let turned = self.frame(&core, size);
         let near = NearLine::new(line, turned.center, size)?.at_foot();
         let known = self.shape.certain_crossing(turned.before(&near, line))?;
         Some(near.after(known, |n| self.rotation * n))
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        let (pose, core) = ((&self.rotation, self.translation), self.shape.core());
+        let size = [core.size(), core.origin.norm()];
+        line.turned(pose, self.rotation_error, size, |line| self.shape.close_crossing(line))
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {

@@ -2,8 +2,8 @@
 
 use crate::support::ScalarOf;
 use crate::{
-    CertainCrossing, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, SupportMap,
-    Vector,
+    CertainCrossing, Close, CloseLine, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope,
+    Rounding, SupportMap, Vector,
 };
 
 /// The set `−C = { −x : x ∈ C }`: the second term of a difference.
@@ -43,6 +43,10 @@ impl<S: SupportMap> SupportMap for Reflected<S> {
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
         let line = LineQuery { source: -line.source, direction: -line.direction, ..line };
         Some(self.0.certain_crossing(line)?.with_normal(|n| -n))
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        Some(self.0.close_crossing(&line.reflected())?.with_normal(|n| -n))
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {

@@ -3,10 +3,12 @@
 use crate::error::{InvalidShape, non_negative};
 use num_traits::Float as _;
 
+use crate::line_crossing::crossed_by_line::closely;
 use crate::numerics::twofold::two_sum;
 use crate::support::{ScalarOf, support_of_parts};
 use crate::{
-    CertainCrossing, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, SupportMap,
+    CertainCrossing, Close, CloseLine, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope,
+    Rounding, SupportMap,
 };
 
 /// The Minkowski sum of a shape and a ball: the shape grown by a radius, its edges and corners rounded.
@@ -79,7 +81,14 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
     /// The rounding of the shape; the sum of the radii is rounded, unless one is zero.
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
+        if line.is_close {
+            return closely(self, line);
+        }
         self.shape.certain_crossing(line.sweeping(self.radius))
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        self.shape.close_crossing(&line.sweeping(self.radius))
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {

@@ -1,6 +1,6 @@
 //! The question where a line is in a shape.
 
-use super::LineCrossing;
+use super::{CertainCrossing, LineCrossing, LineQuery, closely as close};
 use crate::{Core, Lines, ScalarOf, SupportMap};
 
 /// A convex set with a closed form for where a line is in it, for [`line_crossing`].
@@ -70,4 +70,14 @@ pub fn line_crossing<S: CrossedByLine + ?Sized>(
 ) -> LineCrossing<S::Vector> {
     let Core { origin, radius, .. } = shape.core();
     shape.core_line_crossing(source - origin, direction, radius)
+}
+
+/// The [certain crossing](SupportMap::certain_crossing) of a shape in twice the precision.
+#[cold]
+#[inline(never)]
+pub(crate) fn closely<S: SupportMap + ?Sized>(
+    shape: &S,
+    line: LineQuery<S::Vector>,
+) -> Option<CertainCrossing<S::Vector>> {
+    close::crossing(&shape.core(), line, |line| shape.close_crossing(line))
 }

@@ -9,7 +9,7 @@
 mod ball;
 mod capsule;
 mod certain;
-pub(crate) mod closely;
+mod closely;
 mod cone;
 pub(crate) mod crossed_by_line;
 mod cuboid;
@@ -28,6 +28,7 @@ pub(crate) use ball::ball;
 pub(crate) use capsule::Spine;
 pub use certain::{CertainCrossing, LineQuery};
 pub(crate) use certain::{NearLine, skew};
+pub use closely::{Close, CloseLine};
 pub(crate) use cone::cone;
 pub(crate) use cuboid::cuboid;
 pub(crate) use cylinder::cylinder;

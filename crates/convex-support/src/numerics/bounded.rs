@@ -31,6 +31,18 @@ impl Bounded {
         Self { value, error: (error + LOST * value.high.abs()) * RAISED }
     }
 
+    /// The nearest plain number to its middle.
+    #[must_use]
+    pub fn middle(self) -> f64 {
+        self.value.value()
+    }
+
+    /// The number with a further error.
+    #[must_use]
+    pub fn give_or_take(self, error: f64) -> Self {
+        Self { error: (self.error + error) * RAISED, ..self }
+    }
+
     /// Numbers that it is certainly not below and not above.
     #[must_use]
     pub fn bounds(self) -> [f64; 2] {

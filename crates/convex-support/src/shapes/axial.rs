@@ -2,9 +2,10 @@
 
 use num_traits::Float as _;
 
-use crate::Vector3;
 use crate::ball_support::swept_hessian;
+use crate::numerics::elementary::hypot;
 use crate::numerics::range::is_comfortable;
+use crate::{Scalar, Vector3};
 
 /// The part of `direction` across the y axis.
 #[inline]
@@ -36,4 +37,19 @@ pub(crate) struct ConeMeasures<S> {
     pub(crate) extent: S,
     /// Cosine and sine of half the opening angle.
     pub(crate) slant: (S, S),
+}
+
+impl<S: Scalar> ConeMeasures<S> {
+    /// The cone of this half height and radius, neither of which is negative.
+    pub(crate) fn new(half_height: S, radius: S) -> Self {
+        // The slant is from the rim up to the apex; a point has an upright one.
+        let half_radius = radius * S::from_f64(0.5);
+        let half_length = hypot(half_height, half_radius);
+        let slant = if half_length > S::ZERO {
+            (half_height / half_length, half_radius / half_length)
+        } else {
+            (S::ONE, S::ZERO)
+        };
+        Self { half_height, radius, extent: hypot(radius, half_height), slant }
+    }
 }

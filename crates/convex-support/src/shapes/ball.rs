@@ -2,10 +2,11 @@
 
 use crate::ball_support::swept;
 use crate::error::{InvalidShape, non_negative};
-use crate::line_crossing::{NearLine, ball, closely, lanes};
+use crate::line_crossing::crossed_by_line::closely;
+use crate::line_crossing::{NearLine, ball, lanes};
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Lines, Rounding, Scalar, SupportMap,
-    Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Lines, Rounding,
+    Scalar, SupportMap, Vector,
 };
 
 /// The ball `|x| ≤ radius`; a disc in 2D. Its core is a point.
@@ -63,11 +64,15 @@ impl<V: Vector> SupportMap for Ball<V> {
 
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
-        let line = line.sweeping(self.radius);
         if line.is_close {
-            return closely::capsule(line, V::ZERO, V::Scalar::ZERO);
+            return closely(self, line);
         }
+        let line = line.sweeping(self.radius);
         NearLine::new(line, V::ZERO, line.radius)?.ball(line.radius)
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        line.sweeping(self.radius).capsule(V::Scalar::ZERO)
     }
 
     fn rounding(&self) -> Rounding<V> {

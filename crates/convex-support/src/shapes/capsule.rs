@@ -3,11 +3,12 @@
 use num_traits::Float as _;
 
 use crate::error::{InvalidShape, non_negative};
-use crate::line_crossing::{NearLine, Spine, closely, lanes};
+use crate::line_crossing::crossed_by_line::closely;
+use crate::line_crossing::{NearLine, Spine, lanes};
 use crate::support::support_of_parts;
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines, Parallelotope,
-    Rounding, SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines,
+    Parallelotope, Rounding, SupportMap, Vector,
 };
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
@@ -76,10 +77,10 @@ impl<V: Vector> SupportMap for Capsule<V> {
 
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
-        let line = line.sweeping(self.radius);
         if line.is_close {
-            return closely::capsule(line, V::ZERO, self.half_height);
+            return closely(self, line);
         }
+        let line = line.sweeping(self.radius);
         let spine = Spine::upright(self.half_height);
         NearLine::new(line, V::ZERO, self.half_height + line.radius)?.segment(&spine, line.radius)
     }
@@ -92,6 +93,10 @@ impl<V: Vector> SupportMap for Capsule<V> {
     #[inline]
     fn core_parallelotope(&self) -> Option<Parallelotope<V>> {
         Some(Parallelotope { center: V::ZERO, half_edges: [V::axis(1) * self.half_height, V::ZERO, V::ZERO] })
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        line.sweeping(self.radius).capsule(self.half_height)
     }
 
     fn rounding(&self) -> Rounding<V> {

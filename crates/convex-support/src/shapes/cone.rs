@@ -4,12 +4,12 @@ use super::axial::{ConeMeasures, across, disc_hessian};
 use crate::ball_support::swept;
 use crate::closest_point::closest_of_cone;
 use crate::error::{InvalidShape, measurable, non_negative};
-use crate::line_crossing::{NearLine, closely, cone};
+use crate::line_crossing::crossed_by_line::closely;
+use crate::line_crossing::{NearLine, cone};
 use crate::numerics::bound::roundings;
-use crate::numerics::elementary::hypot;
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap,
-    Vector3,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding,
+    Scalar, SupportMap, Vector3,
 };
 
 /// The cone with its apex at `(0, half_height, 0)` and its base disc at `y = −half_height`.
@@ -36,16 +36,9 @@ impl<V: Vector3> Cone<V> {
     pub fn new(half_height: V::Scalar, radius: V::Scalar) -> Result<Self, InvalidShape> {
         let half_height = non_negative("half_height", half_height)?;
         let radius = non_negative("radius", radius)?;
-        // The slant is from the rim up to the apex; a point has an upright one.
-        let half_radius = radius * V::Scalar::from_f64(0.5);
-        let half_length = hypot(half_height, half_radius);
-        let slant = if half_length > V::Scalar::ZERO {
-            (half_height / half_length, half_radius / half_length)
-        } else {
-            (V::Scalar::ONE, V::Scalar::ZERO)
-        };
-        let extent = measurable("half_height", hypot(radius, half_height))?;
-        Ok(Self { measures: ConeMeasures { half_height, radius, extent, slant } })
+        let measures = ConeMeasures::new(half_height, radius);
+        measurable("half_height", measures.extent)?;
+        Ok(Self { measures })
     }
 
     /// Half the height, from the middle to the apex or to the base.
@@ -106,9 +99,13 @@ impl<V: Vector3> SupportMap for Cone<V> {
             return None;
         }
         if line.is_close {
-            return closely::cone(line, &self.measures);
+            return closely(self, line);
         }
         NearLine::new(line, V::ZERO, self.measures.extent)?.cone(&self.measures)
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        line.cone(self.measures.half_height, self.measures.radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

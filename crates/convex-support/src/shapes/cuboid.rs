@@ -1,10 +1,11 @@
 //! A box about the origin, along the axes.
 
 use crate::error::{InvalidShape, finite, measurable};
-use crate::line_crossing::{NearLine, closely, cuboid, lanes, rounded_cuboid};
+use crate::line_crossing::crossed_by_line::closely;
+use crate::line_crossing::{NearLine, cuboid, lanes, rounded_cuboid};
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Lines, Parallelotope, Rounding,
-    Scalar, SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Lines,
+    Parallelotope, Rounding, Scalar, SupportMap, Vector,
 };
 
 /// The box `|xᵢ| ≤ half_extentsᵢ`; a rectangle in 2D.
@@ -74,7 +75,7 @@ impl<V: Vector> SupportMap for Cuboid<V> {
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
         if line.is_close {
-            return closely::cuboid(line, self.half_extents);
+            return closely(self, line);
         }
         if line.radius > V::Scalar::ZERO {
             return self.certain_crossing_swept(line);
@@ -98,6 +99,10 @@ impl<V: Vector> SupportMap for Cuboid<V> {
     fn core_parallelotope(&self) -> Option<Parallelotope<V>> {
         let half_edge = |i: usize| if i < V::DIM { V::axis(i) * self.half_extents.get(i) } else { V::ZERO };
         Some(Parallelotope { center: V::ZERO, half_edges: [half_edge(0), half_edge(1), half_edge(2)] })
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        line.cuboid(self.half_extents)
     }
 
     fn rounding(&self) -> Rounding<V> {

@@ -6,12 +6,13 @@ use super::axial::{across, disc_hessian};
 use crate::ball_support::swept;
 use crate::closest_point::closest_of_ball;
 use crate::error::{InvalidShape, measurable, non_negative};
-use crate::line_crossing::{NearLine, closely, cylinder};
+use crate::line_crossing::crossed_by_line::closely;
+use crate::line_crossing::{NearLine, cylinder};
 use crate::numerics::bound::roundings;
 use crate::numerics::elementary::hypot;
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap,
-    Vector3,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding,
+    Scalar, SupportMap, Vector3,
 };
 
 /// The cylinder `x² + z² ≤ radius²`, `|y| ≤ half_height`.
@@ -86,9 +87,13 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
             return None;
         }
         if line.is_close {
-            return closely::cylinder(line, self.half_height, self.radius);
+            return closely(self, line);
         }
         NearLine::new(line, V::ZERO, self.extent)?.cylinder(self.half_height, self.radius)
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        line.cylinder(self.half_height, self.radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

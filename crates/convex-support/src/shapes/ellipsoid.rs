@@ -5,13 +5,14 @@ use num_traits::Float as _;
 use crate::ball_support::swept_hessian;
 use crate::closest_point::closest_of_ellipsoid;
 use crate::error::{InvalidShape, finite, finite_matrix, orthonormal};
+use crate::line_crossing::crossed_by_line::closely;
 use crate::line_crossing::{NearLine, ellipsoid, skew};
 use crate::numerics::bound::{image, raised, roundings, roundings_of};
 use crate::numerics::jacobi;
 use crate::numerics::range::power_of_two_below;
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Matrix, Rotation, Rounding, Scalar,
-    SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Matrix, Rotation,
+    Rounding, Scalar, SupportMap, Vector,
 };
 
 /// An ellipsoid, in 2D an ellipse: the points `c + R·diag(a)·u` with `|u| ≤ 1`.
@@ -230,11 +231,19 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
 
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
-        if line.radius > V::Scalar::ZERO || line.is_close {
+        if line.radius > V::Scalar::ZERO {
             return None;
+        }
+        if line.is_close {
+            return closely(self, line);
         }
         NearLine::new(line.within(self.skew), self.center, self.semi_axes.max_element())?
             .ellipsoid(&self.axes, self.inverse_semi_axes)
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        let (axes, size) = ((&self.axes, self.center), [self.semi_axes.max_element(), V::Scalar::ZERO]);
+        line.turned(axes, self.axes_error, size, |line| line.ellipsoid(self.semi_axes))
     }
 
     /// The support point is `R·(a∘u)` with a unit vector `u` that is right to 7 roundings, for the direction along

@@ -1,9 +1,11 @@
 //! A single point.
 
 use crate::error::{InvalidShape, finite};
-use crate::line_crossing::{NearLine, ball, closely};
+use crate::line_crossing::crossed_by_line::closely;
+use crate::line_crossing::{NearLine, ball};
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Rounding, Scalar,
+    SupportMap, Vector,
 };
 
 /// The set of one point.
@@ -62,9 +64,13 @@ impl<V: Vector> SupportMap for Point<V> {
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
         if line.is_close {
-            return closely::capsule(line, self.at, V::Scalar::ZERO);
+            return closely(self, line);
         }
         NearLine::new(line, self.at, line.radius)?.ball(line.radius)
+    }
+
+    fn close_crossing(&self, line: &CloseLine) -> Close {
+        line.seen_from(self.at).capsule(V::Scalar::ZERO)
     }
 
     fn rounding(&self) -> Rounding<V> {

@@ -58,8 +58,8 @@ pub(crate) fn certain<V: Vector>(
     Some(RayCast { outcome, lower, upper, status: Status::Converged, iterations: 1 })
 }
 
-/// The same, in plain numbers or in twice the precision, for a body and a ray whose direction may be wrong by some
-/// part of its length; an observer sees the plane of the answer.
+/// The same, in plain numbers or in twice the precision, for a body and a ray that may begin in it and whose direction
+/// may be wrong by some part of its length; an observer sees the plane of the answer.
 #[inline(always)]
 pub(crate) fn certain_closely<B: CastBody + ?Sized>(
     body: &mut B,
@@ -78,14 +78,38 @@ pub(crate) fn certain_closely<B: CastBody + ?Sized>(
         let reach = (ray.source - origin).norm() + (extent + radius) + (extent + radius);
         line = line.within(direction_error * reach);
     }
-    // For a ray that begins inside, plain numbers give the entry of its line, and twice the precision takes longer than
-    // a search. In a loop, so that the inlined code is there only once.
-    let known = [false, true].into_iter().find_map(|is_close| body.certain_crossing(LineQuery { is_close, ..line }));
-    // Where only rounding decides whether the ray ends before it enters, it enters where a longer one does.
-    let longer = || certain(known?, ray, &RayCastOptions { max_lambda: Float::infinity(), ..*options });
-    let mut answer = certain(known?, ray, options).or_else(longer)?;
-    answer.upper = answer.outcome.until(options.max_lambda, answer.upper, |hit| hit.lambda);
-    answer.status = answer.status.of(&answer.outcome, answer.upper < Float::infinity());
+    let (zero, infinity) = (Scalar::ZERO, ScalarFrom::<B>::infinity());
+    let mut is_behind = false;
+    // In a loop, so that the inlined code is there only once.
+    let answer = loop {
+        match body.certain_crossing(line) {
+            None if line.is_close => return None,
+            None => line.is_close = true,
+            // The line enters before the source; from behind it tells where it leaves.
+            Some(CertainCrossing::Enters { bounds: [_, latest], .. }) if latest <= zero && !is_behind => {
+                (line.direction, is_behind) = (-line.direction, true);
+            }
+            Some(crossing) if !is_behind => {
+                // Where only rounding decides whether the ray ends before it enters, it enters where a longer one does.
+                let longer = || certain(crossing, ray, &RayCastOptions { max_lambda: infinity, ..*options });
+                let mut answer = certain(crossing, ray, options).or_else(longer)?;
+                answer.upper = answer.outcome.until(options.max_lambda, answer.upper, |hit| hit.lambda);
+                answer.status = answer.status.of(&answer.outcome, answer.upper < infinity);
+                break answer;
+            }
+            Some(CertainCrossing::Enters { bounds: [earliest, latest], normal, .. }) => {
+                let (outcome, bound) = if latest <= zero && options.max_lambda >= zero {
+                    (Outcome::Hit(RayHit { lambda: zero, point: ray.source, normal: None }), zero)
+                } else if earliest > zero {
+                    (Outcome::Miss(Miss { axis: normal }), infinity)
+                } else {
+                    return None;
+                };
+                break RayCast { outcome, lower: bound, upper: bound, status: Status::Converged, iterations: 1 };
+            }
+            Some(CertainCrossing::Misses(_)) => return None,
+        }
+    };
     show(&answer, body, ray, observer);
     Some(answer)
 }

@@ -238,6 +238,12 @@ impl<'a, V: Vector> Cores<'a, V> {
         (self.frame.error * Scalar::from_f64(6.0) + self.size * part) * self.scale()
     }
 
+    /// The signed distance of bodies whose cores are so deep in one another, in the world's unit.
+    #[inline(always)]
+    pub(super) fn gap(&self, depth: V::Scalar) -> V::Scalar {
+        -(depth * self.scale()) - self.radius()
+    }
+
     /// The support point along a direction; `None` if it is not finite.
     #[inline]
     pub(crate) fn support(&mut self, direction: V) -> Option<Vertex<V>> {

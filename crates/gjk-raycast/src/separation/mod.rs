@@ -309,9 +309,8 @@ impl<V: Vector> Separation<V> {
     fn up_to(self, cores: &Cores<'_, V>, state: &mut Gjk<V>, way: WayOut<V>) -> Self {
         let by_way = way.h + cores.error_along(way.u());
         // NaN is no bound.
-        let known = |outer: V::Scalar| -(outer * cores.scale()) - cores.radius();
         let plane = cores.best_plane(state);
-        let plane = plane.filter(|&(outer, n)| outer <= by_way && self.lies_across(n, known(outer), cores));
+        let plane = plane.filter(|&(outer, n)| outer <= by_way && self.lies_across(n, cores.gap(outer), cores));
         let (outer, axis) = plane.unwrap_or((by_way, -way.u()));
         Self { outer, axis, ..self }
     }
@@ -337,7 +336,7 @@ impl<V: Vector> Separation<V> {
         let by_near = (-near.lower - radius, near.normal);
         for (outer, axis) in [by_near].into_iter().chain(cores.best_plane(state)) {
             // NaN is no bound.
-            if outer < self.outer && self.lies_across(axis, cores) {
+            if outer < self.outer && self.lies_across(axis, cores.gap(outer), cores) {
                 (self.outer, self.axis) = (outer, axis);
             }
         }
@@ -353,15 +352,14 @@ impl<V: Vector> Separation<V> {
     /// The signed distance of the bodies along the normal, in the world's unit, as it is measured.
     #[inline(always)]
     fn value(&self, cores: &Cores<'_, V>) -> V::Scalar {
-        -(self.depth * cores.scale()) - cores.radius()
+        cores.gap(self.depth)
     }
 
     /// Bounds on it, with the axis of the plane that proves the lower one.
     #[inline(always)]
     fn bounds(&self, cores: &Cores<'_, V>) -> (V::Scalar, V::Scalar, V) {
         let (scale, radius) = (cores.scale(), cores.radius());
-        let world = |depth: V::Scalar| -(depth * scale) - radius;
-        let (lower, upper) = (world(self.outer), world(self.inner));
+        let (lower, upper) = (cores.gap(self.outer), cores.gap(self.inner));
         // A product with the unit may be subnormal.
         let lost = |length: V::Scalar| if length == Scalar::ZERO { length } else { least() };
         let lower = lower - (slack(lower, radius) + lost(self.outer));

@@ -43,8 +43,8 @@ fn ladders(Material { scope, cases, .. }: &Material<'_>) -> Section {
 }
 
 /// Error against difficulty: figures and the sweep before the table of the cases, then the routes to the margin.
-fn difficulties(Material { scope, records, cases }: &Material<'_>) -> Section {
-    let mut section = stiff::section(records);
+fn difficulties(Material { scope, records, cases, needles }: &Material<'_>) -> Section {
+    let mut section = stiff::section(records, needles);
     if scope.quick {
         return section;
     }
