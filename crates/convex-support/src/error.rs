@@ -111,6 +111,17 @@ pub(crate) fn non_negative<S: crate::Scalar>(parameter: &'static str, value: S) 
     }
 }
 
+/// The least of some known bounds on the error of a matrix that is no less than the one in data.
+///
+/// # Errors
+/// If that is no bound, or larger than any.
+#[cfg(feature = "serde")]
+pub(crate) fn known_error(parameter: &'static str, error: f64, known: &[f64]) -> Result<f64, InvalidShape> {
+    let error = non_negative(parameter, error)?;
+    let enough = known.iter().copied().filter(|&known| error <= known).reduce(f64::min);
+    enough.ok_or(InvalidShape::NotOrthonormal)
+}
+
 /// The size of a shape if it did not overflow.
 pub(crate) fn measurable<S: crate::Scalar>(parameter: &'static str, size: S) -> Result<S, InvalidShape> {
     if size.is_finite() { Ok(size) } else { Err(InvalidShape::TooLarge { parameter }) }

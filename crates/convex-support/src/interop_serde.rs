@@ -1,5 +1,9 @@
 //! Shapes as [serde] data: named fields as the constructors name their arguments, vectors and matrices as glam writes
 //! them. Reading goes through the constructors, so that no invalid shape comes in.
+//!
+//! What the numbers do not say stands beside them, so that a shape is equal to the one that was written: how wrong a
+//! matrix is that was computed from a rotation, and whether the edges of a polytope were found. Data without these
+//! fields is that of exact matrices and of points to be scanned.
 
 use alloc::vec::Vec;
 use core::convert::Infallible;
@@ -19,12 +23,20 @@ struct At<T> {
     at: T,
 }
 
-/// Shapes given by points. A polytope is read back as its points, to be scanned; `Polytope::hull_of` finds the edges
-/// again.
+/// Shapes given by points.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Points<T> {
     points: T,
+}
+
+/// A polytope.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Vertices<T, E> {
+    points: T,
+    #[serde(default)]
+    has_edges: E,
 }
 
 /// A ball.
@@ -52,19 +64,25 @@ struct Round<S> {
 /// An ellipsoid.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct SemiAxes<V, M> {
+struct SemiAxes<V, M, E> {
     center: V,
     semi_axes: V,
     axes: M,
+    /// In units of the scalar's epsilon.
+    #[serde(default)]
+    axes_error: E,
 }
 
 /// A shape in a pose.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Moved<S, M, V> {
+struct Moved<S, M, V, E> {
     shape: S,
     rotation: M,
     translation: V,
+    /// In units of the scalar's epsilon.
+    #[serde(default)]
+    rotation_error: E,
 }
 
 /// A shape under an affine map.
@@ -124,15 +142,18 @@ as_data! {
     [V: Vector] Point<V> as At { at: at } by Self::new, where V;
     [V: Vector] Segment<V> as Points { points: points } by Self::new, where V;
     [V: Vector] Triangle<V> as Points { points: points } by Self::new, where V;
-    [V: Vector] Polytope<V> as Points { points: points } by |points: Vec<V>| Self::new(points), where V;
+    [V: Vector] Polytope<V> as Vertices { points: points, has_edges: has_edges } by Self::restored, where V;
     [V: Vector] Ball<V> as Radius { radius: radius } by Self::new, where V::Scalar;
     [V: Vector] Cuboid<V> as HalfExtents { half_extents: half_extents } by Self::new, where V;
     [V: Vector] Capsule<V> as Round { half_height: half_height, radius: radius } by Self::new, where V::Scalar;
     [V: Vector3] Cylinder<V> as Round { half_height: half_height, radius: disc_radius } by Self::new, where V::Scalar;
     [V: Vector3] Cone<V> as Round { half_height: half_height, radius: disc_radius } by Self::new, where V::Scalar;
-    [V: Vector] Ellipsoid<V> as SemiAxes { center: center, semi_axes: semi_axes, axes: axes } by Self::from_axes,
+    [V: Vector] Ellipsoid<V>
+        as SemiAxes { center: center, semi_axes: semi_axes, axes: axes, axes_error: axes_error } by Self::restored,
         where V, V::Matrix;
-    [S: SupportMap] Posed<S> as Moved { shape: shape, rotation: rotation, translation: translation } by Self::from_matrix,
+    [S: SupportMap] Posed<S>
+        as Moved { shape: shape, rotation: rotation, translation: translation, rotation_error: rotation_error }
+        by Self::restored,
         where S, S::Vector, <S::Vector as Vector>::Matrix;
     [S: SupportMap] Affine<S> as Mapped { shape: shape, matrix: matrix, translation: translation } by Self::new,
         where S, S::Vector, <S::Vector as Vector>::Matrix;

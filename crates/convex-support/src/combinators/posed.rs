@@ -67,6 +67,12 @@ struct Errors {
 
 impl Errors {
     const NONE: Self = Self { entry: 0.0, operator: 0.0 };
+
+    /// Those of the matrix of a rotation.
+    #[inline(always)]
+    fn of_rotation<V: Vector>() -> Self {
+        Self { entry: V::Rotation::MATRIX_ERROR, operator: V::Rotation::OPERATOR_ERROR }
+    }
 }
 
 impl<S: SupportMap> Posed<S> {
@@ -97,9 +103,7 @@ impl<S: SupportMap> Posed<S> {
         translation: S::Vector,
     ) -> Result<Self, InvalidShape> {
         let rotation = rotation.checked("rotation")?.matrix();
-        let entry = <S::Vector as Vector>::Rotation::MATRIX_ERROR;
-        let operator = <S::Vector as Vector>::Rotation::OPERATOR_ERROR;
-        Self::at(shape, rotation, Errors { entry, operator }, translation)
+        Self::at(shape, rotation, Errors::of_rotation::<S::Vector>(), translation)
     }
 
     /// The shape moved by a rotation matrix, then by `translation`: for poses given as glam's `DAffine3` or as a
@@ -113,12 +117,35 @@ impl<S: SupportMap> Posed<S> {
         rotation: <S::Vector as Vector>::Matrix,
         translation: S::Vector,
     ) -> Result<Self, InvalidShape> {
-        let rotation = orthonormal("rotation", rotation)?;
-        if rotation.determinant() < ScalarOf::<S>::ZERO {
-            return Err(InvalidShape::Mirrors);
+        let rotation = proper(rotation)?;
+        if rotation == Matrix::IDENTITY {
+            return Self::translated(shape, translation);
         }
         let polished = polished(rotation);
         Self::at(shape, polished, if polished == rotation { Errors::NONE } else { POLISHED }, translation)
+    }
+
+    /// The shape in the pose of another one, from its matrix and the [error](Self::rotation_error) of that. A matrix
+    /// without an error is exact, or comes from elsewhere, and may have drifted.
+    #[cfg(feature = "serde")]
+    pub(crate) fn restored(
+        shape: S,
+        rotation: <S::Vector as Vector>::Matrix,
+        translation: S::Vector,
+        rotation_error: f64,
+    ) -> Result<Self, InvalidShape> {
+        let known = [Errors::NONE, Errors::of_rotation::<S::Vector>(), POLISHED];
+        let entry = crate::error::known_error("rotation_error", rotation_error, &known.each_ref().map(|e| e.entry))?;
+        match known.into_iter().find(|errors| errors.entry == entry && entry > 0.0) {
+            Some(errors) => Self::at(shape, proper(rotation)?, errors, translation),
+            None => Self::from_matrix(shape, rotation, translation),
+        }
+    }
+
+    /// A bound on the error of every entry of the rotation, in units of epsilon.
+    #[cfg(feature = "serde")]
+    pub(crate) fn rotation_error(&self) -> f64 {
+        self.rotation_error.as_f64()
     }
 
     /// The shape moved by `translation`.
@@ -182,6 +209,12 @@ impl<S: SupportMap> Posed<S> {
     fn turned(&self, v: S::Vector) -> S::Vector {
         if v == S::Vector::ZERO { v } else { self.rotation * v }
     }
+}
+
+/// The matrix if it is a rotation to half its digits.
+fn proper<M: Matrix>(rotation: M) -> Result<M, InvalidShape> {
+    let rotation = orthonormal("rotation", rotation)?;
+    if rotation.determinant() < Scalar::ZERO { Err(InvalidShape::Mirrors) } else { Ok(rotation) }
 }
 
 /// The largest distance of an entry of a [`polished`] matrix from the nearest rotation, in units of epsilon. With

@@ -59,10 +59,28 @@ impl<V: Vector> Ellipsoid<V> {
     /// [`InvalidShape`] if a number is not finite, a semi-axis is not positive, or the rotation is the zero quaternion.
     pub fn new(center: V, semi_axes: V, rotation: V::Rotation) -> Result<Self, InvalidShape> {
         let axes = rotation.checked("rotation")?.matrix();
+        Ok(Self::from_axes(center, semi_axes, axes)?.turned())
+    }
+
+    /// With the errors of axes that are the matrix of a rotation.
+    fn turned(self) -> Self {
         let axes_error = V::Scalar::from_f64(V::Rotation::MATRIX_ERROR);
-        let turned = roundings(2.0 * V::Rotation::OPERATOR_ERROR, semi_axes.max_element());
+        let turned = roundings(2.0 * V::Rotation::OPERATOR_ERROR, self.semi_axes.max_element());
+        Self { axes_error, error: self.error + turned, skew: self.skew + turned, ..self }
+    }
+
+    /// The ellipsoid from the numbers of another one and the [error](Self::axes_error) of its axes.
+    #[cfg(feature = "serde")]
+    pub(crate) fn restored(center: V, semi_axes: V, axes: V::Matrix, axes_error: f64) -> Result<Self, InvalidShape> {
+        let error = crate::error::known_error("axes_error", axes_error, &[0.0, V::Rotation::MATRIX_ERROR])?;
         let about_axes = Self::from_axes(center, semi_axes, axes)?;
-        Ok(Self { axes_error, error: about_axes.error + turned, skew: about_axes.skew + turned, ..about_axes })
+        Ok(if error > 0.0 { about_axes.turned() } else { about_axes })
+    }
+
+    /// A bound on the error of every entry of the axes, in units of epsilon.
+    #[cfg(feature = "serde")]
+    pub(crate) fn axes_error(&self) -> f64 {
+        self.axes_error.as_f64()
     }
 
     /// The ellipsoid about `center` whose semi-axis `i` lies along column `i` of `axes`, which must be orthonormal.

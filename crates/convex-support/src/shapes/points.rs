@@ -4,14 +4,15 @@ use crate::numerics::bound::raised_vector;
 use crate::numerics::twofold::lost_in_sum;
 use crate::{Rounding, Scalar, Vector};
 
-/// The middle of the bounding box of a non-empty list of points.
+/// The middle of the bounding box of a non-empty list of points. Its zeros are positive, so that it is the same, to the
+/// last bit, without points that are not vertices.
 #[inline]
 pub(super) fn middle<V: Vector>(points: impl IntoIterator<Item = V>) -> V {
     let mut points = points.into_iter();
     let first = points.next().unwrap_or(V::ZERO);
     let (low, high) = points.fold((first, first), |(low, high), p| (low.min(p), high.max(p)));
     let half = V::Scalar::from_f64(0.5);
-    low * half + high * half
+    low * half + high * half + V::ZERO
 }
 
 /// The points relative to their middle.

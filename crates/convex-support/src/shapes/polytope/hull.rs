@@ -44,12 +44,24 @@ impl<V: Vector> FromPoints<V> {
         from_checked(checked(points)?)
     }
 
-    fn from_checked(points: Vec<V>) -> Result<Self, InvalidShape> {
+    /// The hull of the vertices is found again without the other points, on which it depends how a face of more than
+    /// three corners is divided: so the points of a polytope are all that it is made of.
+    fn from_checked(mut points: Vec<V>) -> Result<Self, InvalidShape> {
+        loop {
+            let found = Self::once(&points)?;
+            if found.polytope.points.len() == points.len() {
+                return Ok(found);
+            }
+            points = found.polytope.points;
+        }
+    }
+
+    fn once(points: &[V]) -> Result<Self, InvalidShape> {
         let middle = middle(points.iter().copied());
-        let (seen, unit) = relative(&points, middle);
+        let (seen, unit) = relative(points, middle);
         let coordinates = coordinates(&seen);
         let Some(hull) = convex_hull(&coordinates) else {
-            return Ok(Self { polytope: Polytope::new(points)?, seen: coordinates, unit, hull: None });
+            return Ok(Self { polytope: Polytope::new(points.iter().copied())?, seen: coordinates, unit, hull: None });
         };
         let edges = edges(&hull);
         let mut kept: Vec<u32> = edges.iter().map(|e| e[0]).collect();

@@ -114,6 +114,24 @@ impl<V: Vector> Polytope<V> {
         Ok(Self { points, search, middle, extent: measurable("points", extent)?, rounding })
     }
 
+    /// The polytope from the points of another one, by which it was [searched by edges](Self::has_edges) or not. Without
+    /// the feature `hull` its points are scanned.
+    #[cfg(feature = "serde")]
+    pub(crate) fn restored(points: Vec<V>, has_edges: bool) -> Result<Self, InvalidShape> {
+        #[cfg(feature = "hull")]
+        if has_edges {
+            return Self::hull_of(points);
+        }
+        let _ = has_edges;
+        Self::new(points)
+    }
+
+    /// Whether the edges of the hull are known.
+    #[cfg(feature = "serde")]
+    pub(crate) fn has_edges(&self) -> bool {
+        matches!(self.search, Search::Look { .. })
+    }
+
     /// The index in the search of the point farthest along `direction`; `hint` is an index to begin at, or any number.
     ///
     /// A direction whose products with coordinates could vanish or overflow is scaled.
