@@ -379,13 +379,12 @@ impl<V: Vector> StartingPair<'_, V> {
             return None;
         }
         let mut iterations = start.iterations;
-        let mut search = |motion| self.later(motion, options, slack, &start, &mut iterations);
-        // What got deeper on the way to the start, backwards, never does after it.
-        let later = search(motion).or_else(|| {
-            match search(Motion { velocity_a: -motion.velocity_a, velocity_b: -motion.velocity_b }) {
-                Some(Later::Deeper(_)) => Some(Later::Never(start.normal)),
-                _ => None,
-            }
+        let mut later = |motion| self.later(motion, options, slack, &start, &mut iterations);
+        let backwards = Motion { velocity_a: -motion.velocity_a, velocity_b: -motion.velocity_b };
+        // Shapes that were deeper before the start than at the start never get deeper after it.
+        let later = later(motion).or_else(|| match later(backwards) {
+            Some(Later::Deeper(_)) => Some(Later::Never(start.normal)),
+            _ => None,
         });
         Some(InContact { start, later, iterations })
     }
@@ -413,23 +412,21 @@ impl<V: Vector> StartingPair<'_, V> {
         let mut before = self.line(start.normal, motion, zero)?;
         let mut after = if before.closing > zero { self.line(along, motion, V::Scalar::infinity())? } else { before };
         for look in 0..LOOKS {
+            let closing = before.closing - after.closing;
             // It is zero if the quotient is NaN, since there is only one line.
-            let crossing = ((before.gap - after.gap) / (before.closing - after.closing)).max(zero);
-            // Before any time the first line is higher than then, and after it the second one, which is all that there
-            // is after the start.
+            let crossing = ((before.gap - after.gap) / closing).max(zero);
+            // The first line is higher before that, and the second one after it. That is all the time after the start
+            // if they cross before it, and then no look tells more.
             let least = if crossing > zero { before.at(crossing).min(after.at(crossing)) } else { after.gap };
             if least >= never {
                 return Some(Later::Never(if after.gap >= never { after.normal } else { before.normal }));
             }
-            if crossing == zero {
+            let is_smooth = look % 2 == 1 && after.time < V::Scalar::infinity();
+            let level = before.time + (after.time - before.time) * (before.closing / closing);
+            let time = if is_smooth { level } else { crossing };
+            if !(time > zero) {
                 return None;
             }
-            let slope_is_zero = before.closing / (before.closing - after.closing);
-            let time = if look % 2 == 1 && after.time < V::Scalar::infinity() {
-                before.time + (after.time - before.time) * slope_is_zero
-            } else {
-                crossing
-            };
             let step = velocity * time;
             let moved = Posed::translated(self.a, step).ok()?;
             let moved = StartingPair { a: &WithoutLines(&moved), b: self.b, target: self.target };
@@ -465,7 +462,7 @@ impl<V: Vector> StartingPair<'_, V> {
         let terms = [core_a.origin, point_a, -core_b.origin, -point_b];
         let gap = plane.height(terms, error, core_a.radius + core_b.radius).least();
         let closing = plane.sinking([motion.velocity_a, -motion.velocity_b]).most();
-        Some(Line { gap, closing, normal: plane.unit, time })
+        Some(Line { gap, closing, normal: direction, time })
     }
 }
 

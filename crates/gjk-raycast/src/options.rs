@@ -208,10 +208,12 @@ pub enum StartInContact {
     /// touch again after they were apart. Sliding, rolling or turning at the same depth is no hit, and neither is
     /// moving apart. Bodies that move straight get deeper at once, a hit at time 0, or never: a miss.
     ///
-    /// Deeper means deeper by more than a slack. The slack is the sum of 16ε of the bodies' sizes, a few times the
-    /// rounding of their places, and the uncertainty of their depth at the start. While turning bodies stay as deep as
-    /// they began, to this slack, the time when they begin to sink cannot be known. So the lower bound of their hit
-    /// is 0, and if they may have sunk from the start on, its time is 0 too.
+    /// Deeper means deeper by more than a slack. The slack is the sum of 16ε of the bodies' sizes and a few times the
+    /// rounding of their places and of their support points. Either answer about bodies that move straight is proved;
+    /// if their depth at the start is not known to the slack, it may be undecided. For bodies that turn, the
+    /// uncertainty of that depth adds to the slack. While they stay as deep as they began, to this slack, the time when
+    /// they begin to sink cannot be known. So the lower bound of their hit is 0, and if they may have sunk from the
+    /// start on, its time is 0 too.
     ///
     /// The answer is undecided if bodies come up from an overlap until they only touch, to rounding, and go down again.
     /// It is also undecided if a body rolls on its own edge or its own round face, unless it is a ball: its support
@@ -312,7 +314,8 @@ pub struct LinearCastOptions<V: Vector> {
     /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
     /// of rounding always ends the iteration. A negative value and NaN are taken for zero. Default: 0.
     pub tolerance: V::Scalar,
-    /// The iterations after which to give up, those of repeated searches included. Default: 200.
+    /// The iterations after which to give up, those of repeated searches included. Only the depths that
+    /// [`StartInContact::IfDeeper`] looks at may take as many each. Default: 200.
     pub max_iterations: usize,
     /// The warm start from the last frame's answer, which predicts the direction from `b` to `a` at contact. Default:
     /// none.

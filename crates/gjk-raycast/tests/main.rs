@@ -19,6 +19,7 @@ mod common;
 mod contact;
 mod curved_casts;
 mod data;
+mod deepening;
 mod depth_shortcuts;
 mod derivatives;
 mod descent_2d;

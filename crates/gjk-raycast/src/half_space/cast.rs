@@ -78,9 +78,12 @@ impl<V: Vector> HalfSpace<V> {
         let Lowest { height, point } = plane.lowest(shape, options.target_distance.max(zero));
         let sinking = plane.sinking([motion.velocity_a, -motion.velocity_b]);
         let goes_deeper = options.start_in_contact == StartInContact::IfDeeper;
-        if goes_deeper && height.least() <= zero && !(sinking.most() > zero) {
-            let outcome = Outcome::Miss(Miss { axis: plane.unit });
-            return Ok(LinearCast::without_upper(outcome, V::Scalar::infinity(), Status::Converged, 1));
+        // What may be in contact gets deeper just if it sinks, however deep it is. NaN tells nothing.
+        if goes_deeper && height.least() <= zero && !(sinking.least() > zero) {
+            let miss = (Outcome::Miss(Miss { axis: plane.unit }), V::Scalar::infinity(), Status::Converged);
+            let is_known = sinking.most() <= zero;
+            let (outcome, lower, status) = if is_known { miss } else { (Outcome::Undecided, zero, Status::Stalled) };
+            return Ok(LinearCast::without_upper(outcome, lower, status, 1));
         }
         let Cast { outcome, lower, upper, status, .. } = plane.crossing(height, sinking, options.max_time);
         let has_normal = height.most() >= zero || goes_deeper;
