@@ -12,6 +12,7 @@ mod cast_derivatives;
 mod cast_methods;
 mod certificate_points;
 mod certificates;
+mod claims;
 mod closed_forms;
 mod closest_points;
 mod common;
