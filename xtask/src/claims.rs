@@ -23,7 +23,7 @@ impl Planes for Exact {
 /// What became of the claims of a query's answers. `None` where there are no laws for it, or it cannot be asked.
 ///
 /// The starts are directions to begin with, and of planes to try.
-pub fn of(query: &Object, starts: &[Numbers], meshes: &Meshes) -> Option<Report> {
+pub(crate) fn of(query: &Object, starts: &[Numbers], meshes: &Meshes) -> Option<Report> {
     let question = engine::question(query, meshes).ok()?;
     let single = query.get("precision").and_then(Value::as_str) == Some("f32");
     let mesh = |path: &str| {
@@ -40,7 +40,7 @@ pub fn of(query: &Object, starts: &[Numbers], meshes: &Meshes) -> Option<Report>
 }
 
 /// What is wrong with the answer to a query that says what is expected of it.
-pub fn expected(query: &Object, meshes: &Meshes) -> Vec<String> {
+pub(crate) fn expected(query: &Object, meshes: &Meshes) -> Vec<String> {
     let Ok(question) = engine::question(query, meshes) else { return Vec::new() };
     let answer = as_read(Line { id: Value::Null, line: 0, outcome: question.ask() });
     let is_undecided = answer.contains_key("error");

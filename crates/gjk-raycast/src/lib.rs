@@ -82,6 +82,7 @@
 //! - `paper`: the sub-algorithms of the papers beside the default, for comparison: [`SubAlgorithm`].
 //! - `hull`, `mint`, `bytemuck`, `approx`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: the
 //!   features of [`convex_support`] with these names, for its shapes.
+//! - `laws`: what answers say of themselves, as laws that hold for any shapes; with `proptest` as property tests too.
 //! - `serde`: options, answers and certificates as data, beside the shapes of `convex-support`.
 //!
 //! # Answers as data

@@ -13,6 +13,7 @@ mod cast_methods;
 mod certain_casts;
 mod certificate_points;
 mod certificates;
+mod claims;
 mod closed_forms;
 mod closest_points;
 mod common;

@@ -89,3 +89,35 @@ fn flat(set: Set) -> Set {
 fn down(nearest: f64) -> f64 {
     if nearest == 0.0 { nearest } else { nearest.next_down() }
 }
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    /// Composed maps are the same set: a chain of poses about a hull, a sum and a disc, there and back.
+    #[test]
+    fn a_flat_body_reaches_as_far() {
+        let parts = json!([
+            {"type": "cone", "half_height": 0.5, "radius": 0.25},
+            {"type": "affine", "matrix": [[1.0, 0.5, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 0.25]],
+             "of": {"type": "minkowski_sum", "of": [{"type": "cuboid", "half_extents": [1.0, 0.5, 0.25]},
+                                                    {"type": "capsule", "half_height": 0.75, "radius": 0.5}]}},
+        ]);
+        let turned = json!({"type": "posed", "rotation": [0.5, -0.25, 0.125, 1.0], "translation": [1.0, 2.0, -3.0],
+                            "of": {"type": "hull", "of": parts}});
+        let shape = json!({"type": "posed", "translation": [-1.0, 0.0, 7.0], "of": turned});
+        let reader = Reader { single: false, mesh: &|path| Err(path.to_owned()) };
+        let plain = reader.body(&shape).expect("a shape");
+        let solid = Solid::read(&shape, &reader).expect("a shape");
+        for normal in [[1.0, 0.0, 0.0], [-0.5, 0.25, 3.0], [0.125, -7.0, 1.0]] {
+            let n = exactly(normal);
+            let reach = &plain.core.support(&n).1 + &(&plain.radius * &n.length());
+            let expected = -reach.over(&n.length()).to_f64();
+            let [least, most] = solid.beyond(normal, &[]);
+            assert!(least <= expected && expected <= most, "{least} ≤ {expected} ≤ {most}");
+            assert!(most - least <= 1e-15 * expected.abs(), "{least} {most}");
+        }
+    }
+}

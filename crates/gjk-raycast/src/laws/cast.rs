@@ -10,7 +10,8 @@ use super::planes::{minus, numbers};
 use super::{Law, Numbers, Report};
 use crate::{Cast, Outcome, Status};
 
-/// The width of a converged bracket along the normal, in units of ε times the size and the reach, plus the errors.
+/// How far apart or deep the bodies may be within a converged bracket, in units of ε times the size and the way, plus the
+/// errors.
 const WIDTH: f64 = 64.0;
 
 /// How far a plane may be from where it should be, in the same unit.
@@ -113,6 +114,9 @@ impl Told {
 /// How far the ray's point, or body `a`, is before the plane across a normal at a time.
 pub(super) type Beyond<'f> = &'f dyn Fn(Numbers, f64) -> [f64; 2];
 
+/// Bounds on the signed distance of the bodies at a time.
+pub(super) type Gap<'f> = &'f dyn Fn(f64) -> Option<[f64; 2]>;
+
 /// The claims of casts about one motion.
 pub(super) struct Casts<'f> {
     pub(super) query: &'static str,
@@ -120,11 +124,10 @@ pub(super) struct Casts<'f> {
     pub(super) unit: f64,
     /// What a tolerance is relative to.
     pub(super) size: f64,
-    pub(super) epsilon: f64,
     /// The distance at which bodies count as touching.
     pub(super) target: f64,
-    /// How fast the bodies approach across a normal at a time; for motions that turn, at the point of contact.
-    pub(super) approach: &'f dyn Fn(Numbers) -> Option<f64>,
+    /// The bodies at a time, where their hit is their contact.
+    pub(super) gap: Option<Gap<'f>>,
     /// How far body `a` is before the plane, where the motion is straight.
     pub(super) beyond: Option<Beyond<'f>>,
     /// The planes to try besides those of the answers.
@@ -134,13 +137,43 @@ pub(super) struct Casts<'f> {
 impl Casts<'_> {
     /// Holds the answers against one another and against planes.
     pub(super) fn judge(&self, told: &[Told], report: &mut Report) {
+        let mut seen: Vec<[f64; 2]> = Vec::new();
         for one in told {
             self.alone(one, report);
+            let bounds = one.bounds();
+            if one.is_certain_hit() && one.is_converged && !seen.contains(&bounds) {
+                seen.push(bounds);
+                self.width(self.query, bounds, one.tolerance, report, || format!("{}: {}", one.how, one.answer));
+            }
         }
         self.together(told, report);
         if let Some(beyond) = self.beyond {
             self.planes(told, beyond, report);
         }
+    }
+
+    /// A converged bracket holds only times at which the bodies are as good as in contact: neither farther apart nor deeper
+    /// than the rounding, which a width in time cannot tell of a hit that grazes.
+    pub(super) fn width(
+        &self,
+        query: &'static str,
+        [lower, upper]: [f64; 2],
+        tolerance: f64,
+        report: &mut Report,
+        what: impl FnOnce() -> String,
+    ) {
+        let Some(gap) = self.gap.filter(|_| lower < upper) else { return };
+        let times = [lower, 0.75 * lower + 0.25 * upper, 0.5 * (lower + upper), 0.25 * lower + 0.75 * upper, upper];
+        let off = times
+            .into_iter()
+            .filter_map(gap)
+            .fold(0.0, |most: f64, [least, greatest]| most.max(least - self.target).max(self.target - greatest));
+        let allowed = WIDTH * self.unit + tolerance * self.size;
+        report.widest(query, off / allowed);
+        report.claim((Law::Width, query), off <= allowed, || {
+            let part = off / allowed;
+            format!("[{lower:e}, {upper:e}] has the bodies {part:.1e} times as deep or far as allowed, {}", what())
+        });
     }
 
     fn alone(&self, told: &Told, report: &mut Report) {
@@ -149,18 +182,12 @@ impl Casts<'_> {
         report
             .claim((Law::Bound, query), !(told.lower.is_nan() || told.upper.is_nan()), || say("a bound is no number"));
         match told.said {
-            Said::Hit { time, normal } => {
+            Said::Hit { time, .. } => {
                 let is_within = told.lower <= time && time <= told.upper && time <= told.end;
                 report.claim((Law::Bound, query), is_within, || say("the hit is not within its bounds or the end"));
                 report.claim((Law::Certain, query), told.is_certain || !told.is_converged, || {
                     say("it has converged to a hit that is not certain")
                 });
-                let approach = normal.and_then(self.approach);
-                if let Some(approach) = approach.filter(|approach| *approach > 0.0) {
-                    let along = (WIDTH * self.unit + told.tolerance * self.size) / approach;
-                    let allowed = along + 16.0 * self.epsilon * told.upper.abs();
-                    report.width(query, told.is_converged, [told.lower, told.upper, allowed], || say("the bracket"));
-                }
             }
             Said::Miss { .. } => {
                 let agrees = told.lower >= told.end || told.end < 0.0;

@@ -94,13 +94,18 @@ pub fn linear_cast_judged<V: Vector>(
     let start = signed_distance(a, b, SignedDistanceOptions::new());
     let begins_apart = start.lower.as_f64() > target;
     let is_reported = options.start_in_contact == StartInContact::Report || begins_apart;
+    let gap = |time: f64| {
+        let moved = Posed::translated(a, velocity * V::Scalar::from_f64(time)).ok()?;
+        let apart = signed_distance(&moved as AnyShape<'_, V>, b, SignedDistanceOptions::new());
+        let lost = 4.0 * scale.epsilon * (scale.place + time.abs() * (length(velocities[0]) + length(velocities[1])));
+        Some([apart.lower.as_f64() - lost, apart.upper.as_f64() + lost])
+    };
     let casts = Casts {
         query: "linear_cast",
         unit: scale.unit(),
         size: scale.size,
-        epsilon: scale.epsilon,
         target,
-        approach: &|n| Some(-dot(n, relative)),
+        gap: is_reported.then_some(&gap),
         beyond: is_reported.then_some(&beyond),
         normals: starts.iter().map(|&n| numbers(n)).chain([numbers(start.normal)]).collect(),
     };
@@ -108,7 +113,7 @@ pub fn linear_cast_judged<V: Vector>(
     if !is_reported && target == 0.0 {
         let at = |time: V::Scalar| {
             let moved = Posed::translated(a, velocity * time).ok()?;
-            Some(signed_distance(&moved, b, SignedDistanceOptions::new().with_axis(start.normal)))
+            Some(signed_distance(&moved as AnyShape<'_, V>, b, SignedDistanceOptions::new().with_axis(start.normal)))
         };
         deeper(&told, &start, &scale, (&at, relative), &beyond, &mut report);
     }

@@ -170,6 +170,11 @@ impl Scale {
         self.epsilon * self.size + self.error
     }
 
+    /// The error of a bound.
+    fn of_bounds(&self) -> f64 {
+        8.0 * self.epsilon * self.size + self.error
+    }
+
     /// The rounding of points, which are told in the world.
     fn of_points(&self) -> f64 {
         self.unit() + self.epsilon * self.place

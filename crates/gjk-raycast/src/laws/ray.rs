@@ -8,7 +8,10 @@ use convex_support::{Point, Scalar, Vector};
 use super::cast::{Casts, Told};
 use super::planes::{Stated, dot, length, numbers};
 use super::{AnyShape, Law, Numbers, Planes, Report, Scale};
-use crate::{CastMethod, Ray, RayCastOptions, RayExit, RayHit, Status, WarmStart, ray_cast, ray_exit};
+use crate::{
+    CastMethod, Ray, RayCastOptions, RayExit, RayHit, SignedDistanceOptions, Status, WarmStart, ray_cast, ray_exit,
+    signed_distance,
+};
 
 /// Casts a ray with several options, methods and starts, and with ends at its own hit and beside it; and asks where it
 /// leaves.
@@ -74,15 +77,20 @@ pub fn ray_judged<V: Vector>(
             [f64::NEG_INFINITY, f64::INFINITY]
         }
     };
+    let gap = |time: f64| {
+        let point = Point::new(ray.at(V::Scalar::from_f64(time))).ok()?;
+        let apart = signed_distance(&point as AnyShape<'_, V>, target, SignedDistanceOptions::new());
+        let lost = 4.0 * scale.epsilon * (length(source) + time.abs() * length(direction));
+        Some([apart.lower.as_f64() - lost, apart.upper.as_f64() + lost])
+    };
     // With a beginning, points before it do not count, and planes there say nothing.
     let is_whole = options.min_lambda <= V::Scalar::ZERO;
     let casts = Casts {
         query: "ray_cast",
         unit: scale.unit() + scale.epsilon * length(source).min(scale.size),
         size: target.core().size().as_f64(),
-        epsilon: scale.epsilon,
         target: 0.0,
-        approach: &|n| Some(-dot(n, direction)),
+        gap: Some(&gap),
         beyond: is_whole.then_some(&to_the_end),
         normals: starts.iter().map(|&n| numbers(n)).collect(),
     };
@@ -124,12 +132,10 @@ fn leaves<V: Vector>(
         report.claim((Law::Bound, query), !(lower.is_nan() || upper.is_nan()), || format!("{how}: {exit:?}"));
         let is_converged = exit.status == Status::Converged;
         if let Some(hit) = exit.outcome.hit() {
-            let [at, slope] =
-                [hit.lambda.as_f64(), hit.normal.and_then(|n| (casts.approach)(numbers(n))).unwrap_or(0.0)];
+            let at = hit.lambda.as_f64();
             report.claim((Law::Bound, query), lower <= at && at <= upper, || format!("{how}, not within: {exit:?}"));
-            if slope < 0.0 {
-                let allowed = 64.0 * casts.unit / -slope + 16.0 * casts.epsilon * upper.abs();
-                report.width(query, is_converged, [lower, upper, allowed], || format!("{how}: {exit:?}"));
+            if is_converged && lower.is_finite() {
+                casts.width(query, [lower, upper], 0.0, report, || format!("{how}: {exit:?}"));
             }
             if lower.is_finite() {
                 for &n in casts.normals.iter().chain(&hit.normal.map(numbers)) {

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use convex_support::{Posed, Scalar, Vector};
 
-use super::cast::{Casts, Told};
+use super::cast::{Casts, Gap, Told};
 use super::planes::numbers;
 use super::ray::ends;
 use super::{AnyShape, Law, Report, Scale};
@@ -79,55 +79,57 @@ pub fn motion_cast_judged<V: Vector>(
 
     let scale = Scale::of(a, b);
     let target = options.target_distance.as_f64().max(0.0);
-    let approach = |normal: super::Numbers| {
-        let hit = hit?;
-        let n = V::from_fn(|i| V::Scalar::from_f64(normal[i]));
-        Some(-n.dot(motion_a.velocity(hit.time, hit.point) - motion_b.velocity(hit.time, hit.point)).as_f64())
-    };
     let reach = |point: V, center: V| super::planes::length(numbers(point - center));
     let arms = hit.map_or(0.0, |hit| reach(hit.point, motion_a.center) + reach(hit.point, motion_b.center));
+    let gap = |time: f64| gap((a, motion_a), (b, motion_b), &scale, time);
+    let is_reported = options.start_in_contact == StartInContact::Report;
     let casts = Casts {
         query: "motion_cast",
         unit: scale.unit() + scale.epsilon * (scale.place + arms + target),
         size: scale.size,
-        epsilon: scale.epsilon,
         target,
-        approach: &approach,
+        gap: is_reported.then_some(&gap),
         beyond: None,
         normals: Vec::new(),
     };
     casts.judge(&told, &mut report);
-    if options.start_in_contact == StartInContact::Report {
-        look((a, motion_a), (b, motion_b), &told, target, &scale, &mut report);
+    if is_reported {
+        look(&gap, &told, target, &mut report);
     }
     report
 }
 
-/// Looks at the bodies at some times: they do not overlap before they are said to touch, and touch then.
-fn look<V: Vector>(
+/// Bounds on the signed distance of the bodies at a time.
+fn gap<V: Vector>(
     (a, motion_a): (AnyShape<'_, V>, RigidMotion<V>),
     (b, motion_b): (AnyShape<'_, V>, RigidMotion<V>),
-    told: &[Told],
-    target: f64,
     scale: &Scale,
-    report: &mut Report,
-) {
-    let gap = |time: f64| {
-        let time = V::Scalar::from_f64(time);
-        let [a, b] = [(a, motion_a), (b, motion_b)].map(|(shape, motion)| {
-            let displacement = motion.displacement(time);
-            let error = displacement.turn_error.as_f64()
-                * (shape.core().size() + (shape.core().origin - motion.center).norm()).as_f64()
-                + displacement.shift_error.as_f64()
-                + scale.epsilon * (shape.core().origin.norm() + displacement.shift.norm()).as_f64();
-            let body = Posed::translated(shape, V::ZERO).and_then(|body| displacement.moved(&body));
-            Some((body.ok()?, error))
-        });
-        let ((a, error_a), (b, error_b)) = a.zip(b)?;
-        let answer = signed_distance(&a, &b, SignedDistanceOptions::new());
-        let error = 8.0 * (error_a + error_b) + scale.unit();
-        Some([answer.lower.as_f64() - error, answer.upper.as_f64() + error])
-    };
+    time: f64,
+) -> Option<[f64; 2]> {
+    let time = V::Scalar::from_f64(time);
+    let ((a, error_a), (b, error_b)) = (moved(a, motion_a, time)?, moved(b, motion_b, time)?);
+    let (a, b): (AnyShape<'_, V>, AnyShape<'_, V>) = (&a, &b);
+    let apart = signed_distance(a, b, SignedDistanceOptions::new());
+    let error = 8.0 * (error_a + error_b) + scale.unit();
+    Some([apart.lower.as_f64() - error, apart.upper.as_f64() + error])
+}
+
+/// A body at a time, and how far its pose may be off.
+fn moved<V: Vector>(
+    shape: AnyShape<'_, V>,
+    motion: RigidMotion<V>,
+    time: V::Scalar,
+) -> Option<(Posed<AnyShape<'_, V>>, f64)> {
+    let (displacement, core) = (motion.displacement(time), shape.core());
+    let lever = core.size() + (core.origin - motion.center).norm();
+    let place = core.origin.norm() + displacement.shift.norm();
+    let error = displacement.turn_error * lever + displacement.shift_error + V::Scalar::EPSILON * place;
+    let body = Posed::from_matrix(shape, displacement.rotation(), displacement.of(V::ZERO)).ok()?;
+    Some((body, error.as_f64()))
+}
+
+/// Looks at the bodies at some times: they do not overlap before they are said to touch, and touch then.
+fn look(gap: Gap<'_>, told: &[Told], target: f64, report: &mut Report) {
     let latest = told.iter().map(Told::latest).fold(f64::INFINITY, f64::min);
     if latest.is_finite() {
         let found = told.iter().find(|one| one.latest() <= latest);
