@@ -124,9 +124,9 @@ pub use interop_parry::parry3d;
 pub use interop_parry::parry3d_f64;
 #[doc(hidden)]
 pub use line_crossing::lanes::{LINES, Lines};
+pub use line_crossing::{CertainCrossing, CrossedByLine, Crossing, LineCrossing, LineQuery, line_crossing};
 #[doc(hidden)]
 pub use line_crossing::{Close, CloseLine};
-pub use line_crossing::{CertainCrossing, CrossedByLine, Crossing, LineCrossing, LineQuery, line_crossing};
 pub use motion_derivative::{MotionGradient, MotionHessian};
 pub use parallelotope::Parallelotope;
 pub use rotation::Rotation;

@@ -4,7 +4,10 @@ use num_traits::Float as _;
 
 use crate::numerics::bound::roundings;
 use crate::numerics::range::is_comfortable;
-use crate::{CertainCrossing, Close, CloseLine, Core, CoreKind, Feature, Hint, LineQuery, Parallelotope, Rounding, Scalar, Vector};
+use crate::{
+    CertainCrossing, Close, CloseLine, Core, CoreKind, Feature, Hint, LineQuery, Parallelotope, Rounding, Scalar,
+    Vector,
+};
 
 /// A nonempty, closed, bounded convex set, known by its support mapping.
 ///

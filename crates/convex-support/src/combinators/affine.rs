@@ -10,8 +10,8 @@ use crate::numerics::range::power_of_two_below;
 use crate::numerics::twofold::dot_minus;
 use crate::support::{ScalarOf, sum_of_hessians, swept, swept_hessian};
 use crate::{
-    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Matrix, Parallelotope,
-    Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Matrix,
+    Parallelotope, Rounding, Scalar, SupportMap, Vector,
 };
 
 /// A shape under an affine map: scaled, sheared, mirrored, or, if the matrix is singular, flattened.

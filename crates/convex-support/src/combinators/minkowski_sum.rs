@@ -2,13 +2,13 @@
 
 use num_traits::Float as _;
 
+use crate::line_crossing::closely;
 use crate::numerics::bound::{roundings, roundings_of};
 use crate::numerics::twofold::{lost_in_sum, two_sum};
 use crate::support::{ScalarOf, sum_of_hessians, support_of_parts};
-use crate::line_crossing::closely;
 use crate::{
-    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar,
-    SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Parallelotope,
+    Rounding, Scalar, SupportMap, Vector,
 };
 
 /// The set `A + B = { a + b : a ∈ A, b ∈ B }`: one shape swept by the other. Nest it for more than two.

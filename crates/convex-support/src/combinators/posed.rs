@@ -11,8 +11,8 @@ use crate::numerics::bound::roundings;
 use crate::numerics::twofold::lost_in_sum;
 use crate::support::ScalarOf;
 use crate::{
-    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines, Matrix,
-    Parallelotope, Rotation, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines,
+    Matrix, Parallelotope, Rotation, Rounding, Scalar, SupportMap, Vector,
 };
 
 /// The image `R·C + t` of a shape under a rotation and then a translation.

@@ -2,8 +2,8 @@
 
 use crate::support::ScalarOf;
 use crate::{
-    CertainCrossing, Close, CloseLine, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, SupportMap,
-    Vector,
+    CertainCrossing, Close, CloseLine, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope,
+    Rounding, SupportMap, Vector,
 };
 
 /// The set `−C = { −x : x ∈ C }`: the second term of a difference.

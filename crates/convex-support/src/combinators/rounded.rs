@@ -3,11 +3,12 @@
 use crate::error::{InvalidShape, non_negative};
 use num_traits::Float as _;
 
+use crate::line_crossing::closely;
 use crate::numerics::twofold::two_sum;
 use crate::support::{ScalarOf, support_of_parts};
-use crate::line_crossing::closely;
 use crate::{
-    CertainCrossing, Close, CloseLine, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, SupportMap,
+    CertainCrossing, Close, CloseLine, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope,
+    Rounding, SupportMap,
 };
 
 /// The Minkowski sum of a shape and a ball: the shape grown by a radius, its edges and corners rounded.

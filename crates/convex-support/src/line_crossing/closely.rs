@@ -117,7 +117,8 @@ impl CloseLine {
         let columns: [DVec3; 3] = core::array::from_fn(|j| if j < V::DIM { wide(matrix.col(j)) } else { DVec3::Z });
         let largest = columns[..V::DIM].iter().fold(0.0, |most: f64, column| most.max(column.abs().max_element()));
         let power = power_of_two_below(largest);
-        let entry = |i: usize, j: usize| Bounded::from(columns[j % 3][i % 3] / if j % 3 < V::DIM { power } else { 1.0 });
+        let entry =
+            |i: usize, j: usize| Bounded::from(columns[j % 3][i % 3] / if j % 3 < V::DIM { power } else { 1.0 });
         let cofactor = |i, j| entry(i + 1, j + 1) * entry(i + 2, j + 2) - entry(i + 1, j + 2) * entry(i + 2, j + 1);
         let determinant = (0..3).fold(Bounded::from(0.0), |sum, j| sum + entry(0, j) * cofactor(0, j));
         if !(determinant.is_positive() || determinant.is_negative()) {
@@ -217,7 +218,8 @@ impl CloseLine {
         let radius = self.radius.middle();
         let end = DVec3::Y * half_height;
         let [_, direction] = self.plain();
-        let outward = |at: DVec3| (at - at.max(-end).min(end)).try_normalize().unwrap_or(-direction.normalize_or_zero());
+        let outward =
+            |at: DVec3| (at - at.max(-end).min(end)).try_normalize().unwrap_or(-direction.normalize_or_zero());
         let crossed = |source, direction| Spine::upright(half_height).crossing(radius, source, direction);
         let entry = |line: &Self, by: f64| {
             let radius = line.radius + by.into();

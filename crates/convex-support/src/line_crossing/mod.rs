@@ -24,11 +24,11 @@ mod turned;
 use num_traits::Float as _;
 
 pub(crate) use ball::ball;
-pub(crate) use closely::closely;
-pub use closely::{Close, CloseLine};
 pub(crate) use capsule::Spine;
 pub use certain::{CertainCrossing, LineQuery};
 pub(crate) use certain::{NearLine, skew};
+pub(crate) use closely::closely;
+pub use closely::{Close, CloseLine};
 pub(crate) use cone::cone;
 pub(crate) use cuboid::cuboid;
 pub(crate) use cylinder::cylinder;

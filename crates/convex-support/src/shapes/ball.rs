@@ -4,8 +4,8 @@ use crate::error::{InvalidShape, non_negative};
 use crate::line_crossing::{NearLine, ball, closely, lanes};
 use crate::support::swept;
 use crate::{
-    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Lines, Rounding, Scalar, SupportMap,
-    Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Lines, Rounding,
+    Scalar, SupportMap, Vector,
 };
 
 /// The ball `|x| ≤ radius`; a disc in 2D. Its core is a point.

@@ -6,8 +6,8 @@ use crate::error::{InvalidShape, non_negative};
 use crate::line_crossing::{NearLine, Spine, closely, lanes};
 use crate::support::support_of_parts;
 use crate::{
-    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines, Parallelotope,
-    Rounding, SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines,
+    Parallelotope, Rounding, SupportMap, Vector,
 };
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the

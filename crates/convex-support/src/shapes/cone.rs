@@ -8,8 +8,8 @@ use crate::numerics::bound::roundings;
 use crate::numerics::elementary::hypot;
 use crate::support::swept;
 use crate::{
-    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap,
-    Vector3,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding,
+    Scalar, SupportMap, Vector3,
 };
 
 /// The cone with its apex at `(0, half_height, 0)` and its base disc at `y = −half_height`.

@@ -3,8 +3,8 @@
 use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::{NearLine, closely, cuboid, lanes, rounded_cuboid};
 use crate::{
-    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Lines, Parallelotope, Rounding,
-    Scalar, SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Lines,
+    Parallelotope, Rounding, Scalar, SupportMap, Vector,
 };
 
 /// The box `|xᵢ| ≤ half_extentsᵢ`; a rectangle in 2D.

@@ -10,8 +10,8 @@ use crate::numerics::elementary::hypot;
 use crate::numerics::range::is_comfortable;
 use crate::support::{swept, swept_hessian};
 use crate::{
-    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap,
-    Vector3,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding,
+    Scalar, SupportMap, Vector3,
 };
 
 /// The cylinder `x² + z² ≤ radius²`, `|y| ≤ half_height`.

@@ -10,8 +10,8 @@ use crate::numerics::jacobi;
 use crate::numerics::range::power_of_two_below;
 use crate::support::swept_hessian;
 use crate::{
-    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Matrix, Rotation, Rounding, Scalar,
-    SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Matrix, Rotation,
+    Rounding, Scalar, SupportMap, Vector,
 };
 
 /// An ellipsoid, in 2D an ellipse: the points `c + R·diag(a)·u` with `|u| ≤ 1`.

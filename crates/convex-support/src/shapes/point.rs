@@ -3,7 +3,8 @@
 use crate::error::{InvalidShape, finite};
 use crate::line_crossing::{NearLine, ball, closely};
 use crate::{
-    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Close, CloseLine, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Rounding, Scalar,
+    SupportMap, Vector,
 };
 
 /// The set of one point.
