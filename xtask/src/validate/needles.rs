@@ -25,6 +25,9 @@ const ASPECTS: [f64; 6] = [1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 /// Questions for each row and aspect.
 const EACH: u64 = 24;
 
+/// A distance is certain to within this part of about the width of the shapes.
+const NARROW: f64 = 1.0 / 1024.0;
+
 /// The certain answers and the most steps that the report had when it was recorded.
 const RECORDED: &str = include_str!("../../data/needles.csv");
 
@@ -102,7 +105,8 @@ impl Needles {
         };
         let caption = format!(
             "Needles and plates: for each aspect, how many of {EACH} answers are certain, and in how many steps at most. \
-             Half of the shapes are long and half are flat; rays, motions and bodies are aimed at tips, rims, sides and \
+             A distance is certain if its bounds are within a thousandth of the least width of the shape. Half of the \
+             shapes are long and half are flat; rays, motions and bodies are aimed at tips, rims, sides and \
              ends. Of an affine image, the shape is a ball. The certificates of casts and distances are checked."
         );
         let rows: Vec<Row> = self.rows.iter().map(row).collect();
@@ -113,7 +117,7 @@ impl Needles {
 /// The rows of the recorded table: names, and the certain answers and steps of each aspect.
 fn recorded() -> Vec<(String, Vec<[u64; 2]>)> {
     let row = |line: &str| {
-        let cells: Vec<&str> = line.split(',').collect();
+        let cells: Vec<&str> = line.split(',').map(|cell| cell.trim_matches('"')).collect();
         let names = cells.iter().take(3).map(|name| name.replace(' ', "_")).collect::<Vec<_>>().join(" ");
         let numbers = |cell: &&str| {
             let (certain, rest) = cell.split_once('/')?;
@@ -136,7 +140,10 @@ impl Cell {
             let Some(answered) = certified(line.as_bytes(), &meshes) else { continue };
             let answer =
                 serde_json::from_slice::<Value>(&answered).map(|line| line["answer"].clone()).unwrap_or_default();
-            cell.certain += u64::from(answer["status"] == "converged");
+            // A bound that is left out, as of a graze, is infinite.
+            let bound = |name: &str| answer[name].as_f64().unwrap_or(f64::INFINITY);
+            let is_narrow = query.ends_with("cast") || bound("upper") - bound("lower") <= NARROW;
+            cell.certain += u64::from(answer["status"] == "converged" && is_narrow);
             cell.steps = cell.steps.max(answer["iterations"].as_u64().unwrap_or(0));
             let (proof, said) = judge_line(1, &answered, &meshes);
             if proof == Proof::Disproved {

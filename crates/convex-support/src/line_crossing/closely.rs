@@ -279,7 +279,7 @@ impl CloseLine {
         let height = half_height + half_height;
         let lift = if by == 0.0 { 0.0 } else { by * hypot(height / radius, 1.0) };
         // The product and the length are wrong by a few roundings.
-        let lift = lift + lift.abs() * (8.0 * f64::EPSILON);
+        let lift = lift + lift * (8.0 * f64::EPSILON);
         let (apex, base) = (Bounded::sum(half_height, lift), Bounded::sum(-half_height, -by));
         let (along, fall) = (apex - self.source[1], -self.direction[1]);
         let (tall, wide) = (Bounded::from(height).squared(), Bounded::from(radius).squared());
@@ -328,6 +328,10 @@ impl CloseLine {
     fn in_rounded_box(&self, half_extents: [f64; 3], dimension: usize, is_swept: bool, by: f64) -> First {
         let mut first = First::NONE;
         let radius = self.radius + by.into();
+        if is_swept && radius.is_negative() {
+            // What is left of the box when it is made smaller is not looked for.
+            return first;
+        }
         for long in 0..dimension {
             let half = |i: usize| {
                 if i == long || !is_swept { radius + half_extents[i].into() } else { half_extents[i].into() }
@@ -386,16 +390,14 @@ impl CloseLine {
                 let moved = (Bounded::from(by) / axis(i)).squared() * (one + one / part);
                 if by > 0.0 { one + part + moved } else { (one - moved) / (one + part) }
             });
+            let [v, w] = [line.direction, line.source].map(|v| [0, 1, 2].map(|i| v[i] / axis(i)));
+            let product = |v: [Bounded; 3], w: [Bounded; 3]| {
+                (0..3).fold(Bounded::from(0.0), |sum, i| sum + v[i] * w[i] / squared[i])
+            };
+            let is_real = squared.iter().all(|squared| squared.is_positive());
+            let quadric = is_real.then(|| quadric(product(v, v), product(v, w), product(w, w) - one));
             let mut first = First::NONE;
-            if squared.iter().all(|squared| squared.is_positive()) {
-                let [v, w] = [line.direction, line.source].map(|v| [0, 1, 2].map(|i| v[i] / axis(i)));
-                let product = |v: [Bounded; 3], w: [Bounded; 3]| {
-                    (0..3).fold(Bounded::from(0.0), |sum, i| sum + v[i] * w[i] / squared[i])
-                };
-                if let Quadric::Within(stretch) = quadric(product(v, v), product(v, w), product(w, w) - one) {
-                    first.take(stretch);
-                }
-            }
+            first.take(quadric.map_or(Stretch::UNKNOWN, Quadric::within));
             first
         };
         self.is_not_swept()?;
@@ -451,10 +453,7 @@ impl CloseLine {
             });
             return Stretch::of_level(inside, inside);
         }
-        match quadric(a, b, c - radius.squared()) {
-            Quadric::Within(stretch) => stretch,
-            Quadric::Outside { .. } => Stretch::UNKNOWN,
-        }
+        quadric(a, b, c - radius.squared()).within()
     }
 }
 
@@ -522,6 +521,13 @@ impl First {
 enum Quadric {
     Within(Stretch),
     Outside { low: [f64; 2], high: [f64; 2] },
+}
+
+impl Quadric {
+    /// The stretch between the roots; unknown if it may be outside of them.
+    fn within(self) -> Stretch {
+        if let Self::Within(stretch) = self { stretch } else { Stretch::UNKNOWN }
+    }
 }
 
 /// The larger root in magnitude is a sum without cancellation, and the other one is their product, `c/a`, over it.
