@@ -137,14 +137,14 @@ pub(crate) fn as_body<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> 
 pub(crate) struct AtStart<V: Vector> {
     rays: &'static Quicker<V>,
     touch: fn(&StartingPair<'_, V>, &mut LinearCast<V>, &LinearCastOptions<V>),
-    of_motion: fn(&StartingPair<'_, V>, Motion<V>, &LinearCastOptions<V>, V::Scalar) -> Option<InContact<V>>,
+    of_motion: fn(&StartingPair<'_, V>, &mut LinearCast<V>, Motion<V>, &LinearCastOptions<V>) -> Option<Later<V>>,
 }
 
 impl<V: Vector> AtStart<V> {
     pub(crate) const TABLE: Self = Self {
         rays: &Quicker::TABLE,
         touch: |start, answer, options| start.touch(answer, options),
-        of_motion: |start, motion, options, slack| start.of_motion(motion, options, slack),
+        of_motion: |start, answer, motion, options| start.of_motion(answer, motion, options),
     };
 }
 
@@ -195,7 +195,7 @@ fn answer<V: Vector>(
     };
     let &ObstacleCast { lower, upper, status, iterations, .. } = cast;
     let mut answer = LinearCast { outcome, lower, upper, status, iterations };
-    let start = StartingPair { a, b, target };
+    let mut start = StartingPair { a, b, target, slack: zero };
     // Where only deeper motions count, what is known of the start is looked for below.
     if let Outcome::Hit(Impact { time, normal: None, .. }) = answer.outcome
         && time == zero
@@ -211,8 +211,8 @@ fn answer<V: Vector>(
         // By powers of two that are less than 1, so that nothing overflows.
         let units = |number: f64| V::Scalar::EPSILON * Scalar::from_f64(number);
         let stated = (core_a.error + core_b.error) * Scalar::from_f64(NEAR_OF_STATED);
-        let slack = sizes * units(NEAR) + far * units(NEAR_OF_FAR) + stated;
-        only_if_deeper(&mut answer, &start, motion, options, slack);
+        start.slack = sizes * units(NEAR) + far * units(NEAR_OF_FAR) + stated;
+        only_if_deeper(&mut answer, &start, motion, options);
     }
     answer.status = answer.status.of(&answer.outcome, answer.is_certain());
     answer
@@ -277,35 +277,29 @@ fn only_if_deeper<V: Vector>(
     start: &StartingPair<'_, V>,
     motion: Motion<V>,
     options: &LinearCastOptions<V>,
-    slack: V::Scalar,
 ) {
     let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
     let may_begin_in_contact = match answer.outcome {
         Outcome::Hit(Impact { normal: Some(n), time, .. }) => {
             let closing = n.dot(motion.velocity_b - motion.velocity_a);
             // NaN is looked at.
-            !(closing * time > slack)
+            !(closing * time > start.slack)
         }
         Outcome::Hit(_) => true,
-        Outcome::Undecided => answer.lower * (motion.velocity_b - motion.velocity_a).norm() <= slack,
+        Outcome::Undecided => answer.lower * (motion.velocity_b - motion.velocity_a).norm() <= start.slack,
         Outcome::Miss(_) => false,
     };
     if !may_begin_in_contact {
         return;
     }
-    let contact = match options.extra.get().map(|extra| (extra.of_motion)(start, motion, options, slack)) {
-        // They are apart.
-        Some(None) => return,
-        Some(contact) => contact.filter(|contact| slack < infinity && contact.start.upper < infinity),
-        None => None,
-    };
-    answer.iterations += contact.as_ref().map_or(0, |contact| contact.iterations);
-    match contact.and_then(|InContact { start, later, .. }| Some((start, later?))) {
-        Some((_, Later::Never(axis))) => {
+    // Without a look at the start nothing is known.
+    match options.extra.get().and_then(|extra| (extra.of_motion)(start, answer, motion, options)) {
+        Some(Later::Apart) => {}
+        Some(Later::Never(axis)) => {
             (answer.outcome, answer.status) = (Outcome::Miss(Miss { axis }), Status::Converged);
             (answer.lower, answer.upper) = (infinity, infinity);
         }
-        Some((SignedDistance { point_b: point, normal, .. }, Later::Deeper(upper))) => {
+        Some(Later::Deeper { upper, point, normal }) => {
             if !matches!(answer.outcome, Outcome::Hit(Impact { time, .. }) if time > zero) {
                 answer.outcome = Outcome::Hit(Impact { time: zero, point, normal: Some(normal) });
                 (answer.lower, answer.status) = (zero, Status::Converged);
@@ -313,7 +307,6 @@ fn only_if_deeper<V: Vector>(
             answer.upper = answer.upper.min(upper.max(answer.lower));
         }
         None => {
-            // Neither is proved. Of numbers out of range nothing is known, nor without a look at the start.
             let is_given_up = answer.iterations >= options.max_iterations;
             answer.status = if is_given_up { Status::IterationLimit } else { Status::Stalled };
             (answer.outcome, answer.lower, answer.upper) = (Outcome::Undecided, zero, infinity);
@@ -330,6 +323,8 @@ struct StartingPair<'s, V: Vector> {
     b: Shape<'s, V>,
     /// How far apart they count as touching.
     target: V::Scalar,
+    /// How much less, or more, may be rounding.
+    slack: V::Scalar,
 }
 
 impl<V: Vector> StartingPair<'_, V> {
@@ -363,44 +358,42 @@ impl<V: Vector> StartingPair<'_, V> {
         signed_distance_of_any(self.a, self.b, wanted)
     }
 
-    /// The contact of shapes that touch or overlap at the start, to a slack that is the rounding of their places;
-    /// `None` if they are certainly apart by more.
+    /// Whether shapes that touch or overlap at the start, to a slack that is the rounding of their places, get deeper by
+    /// more than that as they move; `None` if that is not proved.
     ///
     /// The signed distance `s` of bodies that move straight is a convex function of time: it is the greatest of the
     /// lines `g − c·t` of all planes, each of which keeps the shapes apart by `g` at the start, and is closed in on at
-    /// a speed `c`. So shapes get deeper at once or never. They never do if one of the planes that are nearest to
-    /// contact at the start is not closed in on, which need not be the one that the search has come to, if several ways
-    /// out are equally short, or the shapes touch at corners.
+    /// a speed `c`. So shapes get deeper at once or never, and never do if they were deeper before the start.
     #[cold]
     #[inline(never)]
-    fn of_motion(&self, motion: Motion<V>, options: &LinearCastOptions<V>, slack: V::Scalar) -> Option<InContact<V>> {
+    fn of_motion(
+        &self,
+        answer: &mut LinearCast<V>,
+        motion: Motion<V>,
+        options: &LinearCastOptions<V>,
+    ) -> Option<Later<V>> {
         let start = self.signed_distance(options, V::Scalar::infinity());
-        if !(start.lower <= self.target + slack) {
-            return None;
+        answer.iterations += start.iterations;
+        if !(start.lower <= self.target + self.slack) {
+            return Some(Later::Apart);
         }
-        let mut iterations = start.iterations;
-        let mut later = |motion| self.later(motion, options, slack, &start, &mut iterations);
+        let mut later = |motion| self.later(motion, options, &start, &mut answer.iterations);
         let backwards = Motion { velocity_a: -motion.velocity_a, velocity_b: -motion.velocity_b };
-        // Shapes that were deeper before the start than at the start never get deeper after it.
-        let later = later(motion).or_else(|| match later(backwards) {
-            Some(Later::Deeper(_)) => Some(Later::Never(start.normal)),
+        later(motion).or_else(|| match later(backwards) {
+            Some(Later::Deeper { .. }) => Some(Later::Never(start.normal)),
             _ => None,
-        });
-        Some(InContact { start, later, iterations })
+        })
     }
 
-    /// Whether the shapes get deeper by more than a slack than they start as they move; `None` if that is not known.
-    ///
-    /// Two lines, of a plane that is closed in on and of one that is not, bound `s` from below by the height at which
-    /// they cross. If that is not far enough below the start, the shapes never get deeper. Otherwise they are looked at
-    /// when the lines cross: either they are deeper then, or the plane that is nearest to contact there has a line that
-    /// takes the place of one of both. This ends soon if `s` has kinks. If it is smooth, it bends between the two
-    /// places that the lines are of, and each second look is where its slope is zero if that changes evenly.
+    /// The same, as far as the places after the start tell: two lines, of a plane that is closed in on and of one that
+    /// is not, bound `s` from below by the height at which they cross. Perhaps shapes never get deeper than that.
+    /// Otherwise they are looked at when the lines cross: either they are deeper then, or the line of the nearest plane
+    /// there takes the place of one of both. This ends soon if `s` has kinks. If it is smooth, each second look is
+    /// where its slope is zero if that changes evenly.
     fn later(
         &self,
         motion: Motion<V>,
         options: &LinearCastOptions<V>,
-        slack: V::Scalar,
         start: &SignedDistance<V>,
         iterations: &mut usize,
     ) -> Option<Later<V>> {
@@ -408,6 +401,8 @@ impl<V: Vector> StartingPair<'_, V> {
         let velocity = motion.velocity_a - motion.velocity_b;
         let Some(along) = velocity.unit() else { return (velocity == V::ZERO).then_some(Later::Never(start.normal)) };
         let lost = lost_in_sum(motion.velocity_a, -motion.velocity_b).norm();
+        // Of numbers out of range nothing is known.
+        let slack = Some(self.slack).filter(|slack| slack.is_finite())?;
         let [never, deeper] = [start.upper, start.lower].map(|s| s.min(self.target) - slack);
         let mut before = self.line(start.normal, motion, zero)?;
         let mut after = if before.closing > zero { self.line(along, motion, V::Scalar::infinity())? } else { before };
@@ -429,7 +424,7 @@ impl<V: Vector> StartingPair<'_, V> {
             }
             let step = velocity * time;
             let moved = Posed::translated(self.a, step).ok()?;
-            let moved = StartingPair { a: &WithoutLines(&moved), b: self.b, target: self.target };
+            let moved = StartingPair { a: &WithoutLines(&moved), b: self.b, ..*self };
             // The place is rounded, and so is the velocity.
             let off = roundings(2.0, step.norm()) + raised(lost * time);
             let there = moved.signed_distance(options, (off - deeper).max(zero));
@@ -439,7 +434,8 @@ impl<V: Vector> StartingPair<'_, V> {
                 // They are deeper from the start on. If they may begin apart, by the slack, they touch no later than
                 // where the chord of the convex function does.
                 let touching = (start.upper - self.target).max(zero) / (start.upper - upper) * time;
-                return Some(Later::Deeper(touching + roundings(8.0, touching)));
+                let upper = touching + roundings(8.0, touching);
+                return Some(Later::Deeper { upper, point: start.point_b, normal: start.normal });
             }
             // The least is between the bounds that would prove either, however exactly it is known.
             if least >= deeper && upper < never {
@@ -485,17 +481,12 @@ impl<V: Vector> Line<V> {
     }
 }
 
-/// What is proved of shapes in contact.
+/// What is proved of shapes that may be in contact at the start.
 enum Later<V: Vector> {
-    /// They get deeper from the start on, or if they are apart by the slack, from this time on at the latest.
-    Deeper(V::Scalar),
+    /// They are apart there.
+    Apart,
+    /// They get deeper, from the start on, or if they are apart by the slack, from `upper` on at the latest.
+    Deeper { upper: V::Scalar, point: V, normal: V },
     /// They never get deeper, but leave, or slide, along this direction from `b` to `a`.
     Never(V),
-}
-
-/// Two shapes in contact.
-struct InContact<V: Vector> {
-    start: SignedDistance<V>,
-    later: Option<Later<V>>,
-    iterations: usize,
 }
