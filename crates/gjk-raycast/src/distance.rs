@@ -98,7 +98,10 @@ compiled_once! {
         let axis = axis.map(|axis| if is_swapped { -axis } else { axis });
         // No distance is negative. NaN is no limit.
         let limit = if limit < Scalar::ZERO { Scalar::ZERO } else { limit };
-        let of_separation = SignedDistanceOptions { limit, max_iterations, axis, ..SignedDistanceOptions::new() };
+        // How deep bodies are that certainly overlap is not asked.
+        let depth_limit = Scalar::ZERO;
+        let of_separation =
+            SignedDistanceOptions { limit, depth_limit, max_iterations, axis, ..SignedDistanceOptions::new() };
         let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation, extra) };
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, false>(&mut cores, &wanted, observer));

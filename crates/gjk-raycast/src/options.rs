@@ -88,9 +88,9 @@ impl<V: Vector> DistanceOptions<V> {
     /// of the code for distances.
     ///
     /// The second measurement near contact is left out: of bodies that are apart, or overlap, by no more than a few
-    /// roundings of their sizes. There the bracket is as wide as the errors of the largest number in the query, bodies
-    /// that are certainly apart by less may count as touching, and if GJK alone does not decide, the status is
-    /// [`Status::Stalled`](crate::Status::Stalled). All other answers are the same to the last bit.
+    /// roundings of their sizes. There the bracket is as wide as the errors of the largest number in the query, and if
+    /// GJK alone does not decide whether they are apart, the status is [`Status::Stalled`](crate::Status::Stalled). All
+    /// other answers are the same to the last bit.
     #[must_use]
     pub fn lean() -> Self {
         Self {

@@ -46,13 +46,17 @@ pub struct Distance<V: Vector> {
     /// The point of `b` closest to `a`, in the world; where the shapes overlap, a point in both, but for rounding.
     pub point_b: V,
     /// The unit vector from `b` to `a`, across which a plane separates the shapes by [`lower`](Self::lower). It is also
-    /// given where the shapes touch, and is `None` where they overlap by more than rounding.
+    /// given where the shapes touch, if a plane across it separates them but for the width of a converged bracket; and
+    /// is `None` otherwise.
     ///
     /// It is the normal of the plane, and not the direction of `point_a − point_b`, which has fewer digits near
     /// contact. `point_a − point_b` is the distance times the normal, to within √(2·`upper`·(`upper` − `lower`))
     /// plus 64ε of the sizes of both shapes and their offset.
     pub normal: Option<V>,
-    /// How the iteration ended.
+    /// How the iteration ended. The bracket of a converged answer is no wider than 24ε of both extents, both radii and
+    /// the offset of the origins, plus three times the [errors](convex_support::Core::error) of both shapes, and the
+    /// [tolerance](crate::DistanceOptions::tolerance) times `lower`; unless `lower` is beyond the
+    /// [limit](crate::DistanceOptions::limit).
     pub status: Status,
     /// The number of support points computed of each shape.
     pub iterations: usize,
@@ -124,7 +128,8 @@ impl<V: Vector> SignedDistance<V> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Intersection<V: Vector> {
     /// Whether the shapes have a point in common. This is certain if `status` is [`Status::Converged`], and otherwise a
-    /// guess; [`decided`](Self::decided) tells the two apart. It agrees with [`Distance::overlap`].
+    /// guess; [`decided`](Self::decided) tells the two apart. It agrees with [`Distance::overlap`]: shapes that touch,
+    /// to rounding, have a point in common.
     pub overlap: bool,
     /// A unit vector along which a plane separates the shapes, pointing from `b` to `a`; `None` where they overlap.
     ///

@@ -8,7 +8,7 @@ use convex_support::{
     Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Point, Polytope, Posed, Rounded, Scalar,
     Segment, SupportMap, Triangle, Vector, Vector3, support_value,
 };
-use gjk_raycast::{DistanceOptions, IntersectOptions, SignedDistanceOptions, Status};
+use gjk_raycast::{Distance, DistanceOptions, IntersectOptions, SignedDistanceOptions, Status, SubAlgorithm};
 
 fn both(single: impl FnOnce(), double: impl FnOnce()) {
     single();
@@ -796,4 +796,138 @@ fn a_gap_near_contact_is_as_it_was_measured_most_closely() -> Result<(), Invalid
         assert!(off < 2e-7, "off by {off:e}: {single:?}, {double:?}");
     }
     Ok(())
+}
+
+/// All ways to ask for one distance, with the name of each.
+fn all_ways<V: Vector>(
+    a: &dyn SupportMap<Vector = V>,
+    b: &dyn SupportMap<Vector = V>,
+) -> Vec<(&'static str, Distance<V>)> {
+    let (full, lean) = (DistanceOptions::new(), DistanceOptions::lean());
+    let axis = v::<V>([0.125, -0.25, 0.553_902_378_138_323_7]);
+    vec![
+        ("plain", gjk_raycast::distance(a, b, full)),
+        ("swapped", gjk_raycast::distance(b, a, full).reversed()),
+        ("by an axis", gjk_raycast::distance(a, b, full.with_axis(axis))),
+        ("by the opposite axis", gjk_raycast::distance(a, b, full.with_axis(-axis))),
+        ("by signed volumes", gjk_raycast::distance(a, b, full.with_sub_algorithm(SubAlgorithm::SignedVolumes))),
+        ("to a tolerance", gjk_raycast::distance(a, b, full.with_tolerance(s::<V>(0.01)))),
+        ("by few support points", gjk_raycast::distance(a, b, full.with_max_iterations(5))),
+        ("lean", gjk_raycast::distance(a, b, lean)),
+        ("lean, by an axis", gjk_raycast::distance(a, b, lean.with_axis(axis))),
+    ]
+}
+
+/// Holds what all answers about two bodies say of themselves, and against one another.
+fn keep_their_word<V: Vector>(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>) {
+    let zero = V::Scalar::ZERO;
+    let (core_a, core_b) = (a.core(), b.core());
+    let size = core_a.extent + core_b.extent + core_a.radius + core_b.radius + (core_a.origin - core_b.origin).norm();
+    let widest = s::<V>(24.0) * V::Scalar::EPSILON * size + s::<V>(3.0) * (core_a.error + core_b.error);
+    let answers = all_ways(a, b);
+    for (how, one) in &answers {
+        let is_converged = one.status == Status::Converged;
+        let width = one.upper - one.lower - if *how == "to a tolerance" { one.lower * s::<V>(0.01) } else { zero };
+        assert!(!is_converged || width <= widest * s::<V>(1.001), "{how} is wide: {one:?}");
+        assert!(!is_converged || one.overlap != (one.lower > zero), "{how} says both: {one:?}");
+        if let Some(n) = one.normal {
+            let apart = -(support_value(&a, -n) + support_value(&b, n));
+            assert!(apart >= one.lower - widest * s::<V>(2.0), "{how}, the plane does not separate: {one:?} {apart:?}");
+        }
+        for (other_way, other) in &answers {
+            assert!(one.lower <= other.upper, "{how} and {other_way}: {one:?} {other:?}");
+            let both = is_converged && other.status == Status::Converged;
+            assert!(!both || one.overlap == other.overlap, "{how} and {other_way}: {one:?} {other:?}");
+        }
+        let meets = gjk_raycast::intersects(a, b, IntersectOptions::default());
+        let is_contrary = is_converged && meets.decided().is_some_and(|meets| meets != one.overlap);
+        assert!(!is_contrary, "{how}: {one:?} {meets:?}");
+    }
+}
+
+/// Two thin boxes within rounding of contact overlapped by one axis, and were apart by another, both converged.
+#[test]
+fn answers_from_any_axis_are_of_one_mind_about_touching() {
+    let (a, b) = (DVec3::splat(0.001), DVec3::new(0.377_821_288_258_231_46, 0.740_644_480_695_963_2, 1e-6));
+    let place = DVec3::new(1.710_024_408_318_778_8, 2.430_444_967_562_931_6, 2.623_058_628_730_002);
+    fn run<V: Vector3>(a: DVec3, b: DVec3, place: DVec3) {
+        let [a, b] = [a, b].map(|h| cuboid::<V>(h.to_array()));
+        let beside = |place: V| Posed::translated(b, place).expect("finite");
+        let place = v::<V>(place.to_array());
+        let far = apart(&a, &beside(place));
+        for ulps in -8..=8 {
+            let gap = far.distance + s::<V>(f64::from(ulps)) * V::Scalar::EPSILON;
+            keep_their_word::<V>(&a, &beside(place + far.normal.expect("apart") * gap));
+        }
+    }
+    both(|| run::<Vec3A>(a, b, place), || run::<DVec3>(a, b, place));
+}
+
+/// Thin and flat bodies a few ulps apart or in one another: triangles, sheets and needles of ellipsoids, cones, hulls.
+#[test]
+fn thin_bodies_near_contact_keep_their_word() {
+    fn run<V: Vector3>() {
+        for seed in 0..60_u32 {
+            let thin = |k: u32| [1.0, 1e-3, 1e-6][(seed / k % 3) as usize];
+            let sizes = [0.5 + 0.01 * f64::from(seed), 0.7 * thin(1), 0.9 * thin(3)];
+            let turn = quaternion::<V>([0.1, 0.2 + 0.01 * f64::from(seed), -0.3, 0.9]);
+            let shapes: [Box<dyn SupportMap<Vector = V>>; 6] = [
+                Box::new(Ellipsoid::new(V::ZERO, v(sizes), turn).expect("positive")),
+                Box::new(turned(Cone::<V>::new(s::<V>(sizes[0]), s::<V>(sizes[1])).expect("positive"), turn, [0.0; 3])),
+                Box::new(turned(cuboid::<V>(sizes), turn, [0.0; 3])),
+                Box::new(hull::<V>(seed, 9, sizes[1], [0.0; 3])),
+                Box::new(
+                    Triangle::new([v::<V>([1.0, 0.5, 0.0]), v([-1.0, 0.25, 0.0]), v([0.0, -1.0, 0.5])])
+                        .expect("finite"),
+                ),
+                Box::new(Ball::<V>::new(s::<V>(8.0 * sizes[2])).expect("positive")),
+            ];
+            let [a, b] = [&shapes[(seed % 6) as usize], &shapes[((seed + 1 + seed / 6 % 5) % 6) as usize]];
+            let beside = |place: V| Posed::translated(b, place).expect("finite");
+            let place = v::<V>([0.3 * f64::from(seed % 7) - 0.9, 1.7, 0.2 * f64::from(seed % 5) - 0.4]);
+            let far = distance(a, &beside(place), DistanceOptions::default());
+            let Some(n) = far.normal else { continue };
+            for ulps in [-300, -5, -1, 0, 1, 4, 40] {
+                let gap = far.distance + s::<V>(f64::from(ulps)) * V::Scalar::EPSILON;
+                keep_their_word::<V>(a, &beside(place + n * gap));
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// The vector between a point and a thin ellipsoid 340ε apart is off by a hundredth of a degree, and the plane across
+/// it by more than the gap: curvature tells the plane in a few steps, where 127 did not.
+#[test]
+fn a_vector_too_short_for_a_direction_does_not_stall_a_search() {
+    let turn = DQuat::from_xyzw(
+        0.065_145_101_227_752_2,
+        -0.916_796_069_670_066_3,
+        -0.303_487_021_009_378_74,
+        0.251_270_194_218_092_5,
+    );
+    let sizes = DVec3::new(0.409_505_675_284_039, 0.000_486_127_098_654_866_33, 0.693_377_603_844_427_3);
+    let place = DVec3::new(-0.045_144_901_755_681_84, -0.050_138_270_160_228_51, 0.072_035_622_733_137_02);
+    let ellipsoid = Ellipsoid::new(DVec3::ZERO, sizes, DQuat::IDENTITY).expect("positive");
+    let there = Posed::new(ellipsoid, turn, place).expect("finite");
+    let point = Point::new(DVec3::ZERO).expect("finite");
+    let answer = distance(&point, &there, DistanceOptions::default());
+    assert!(answer.status == Status::Converged && answer.iterations <= 16, "{answer:?}");
+    assert!(answer.lower > 0.0 && answer.upper < 1e-13, "{answer:?}");
+}
+
+/// How deep bodies are takes dozens of support points, that they overlap a few.
+#[test]
+fn that_concentric_cylinders_overlap_takes_few_support_points() {
+    let cylinder = Cylinder::<DVec3>::new(1.0, 1.0).expect("positive");
+    let answer = distance(&cylinder, &cylinder, DistanceOptions::default());
+    assert!(answer.overlap && answer.status == Status::Converged && answer.iterations <= 16, "{answer:?}");
+}
+
+/// No distance is negative, so that a negative limit asks for no less than whether there is one.
+#[test]
+fn a_negative_limit_is_none_at_contact() {
+    let (a, b) = (cuboid::<DVec3>([1.0; 3]), at(cuboid::<DVec3>([1.0; 3]), [1.5, 0.0, 0.0]));
+    let answer = distance(&a, &b, DistanceOptions::new().with_limit(-1.0));
+    assert!(answer.overlap && answer.upper == 0.0, "{answer:?}");
 }

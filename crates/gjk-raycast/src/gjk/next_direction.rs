@@ -133,8 +133,9 @@ struct Newton<V: Vector> {
     last: Option<(V, V)>,
     /// The width of the bracket before the last turn, if the last step was one.
     before: Option<V::Scalar>,
-    /// Turns in a row that did not shrink the bracket.
+    /// Turns in a row that did not shrink the bracket, and whether there have once been as many as are allowed.
     failures: usize,
+    failed: bool,
 }
 
 /// Turns that fail to halve the bracket before the next step is one of GJK.
@@ -155,7 +156,7 @@ const LARGEST: f64 = 0.5;
 
 impl<V: Vector> Newton<V> {
     fn new(noise: V::Scalar) -> Self {
-        Self { noise, last: None, before: None, failures: 0 }
+        Self { noise, last: None, before: None, failures: 0, failed: false }
     }
 
     /// The next unit direction, after `p` was found as the lowest point along the unit vector `n`, with `reach = n·p`.
@@ -177,14 +178,15 @@ impl<V: Vector> Newton<V> {
             } else {
                 self.failures += 1;
                 if self.failures >= MAX_FAILURES {
-                    self.failures = 0;
+                    (self.failures, self.failed) = (0, true);
                     return None;
                 }
             }
         }
         // If the plane is as far below zero as the point is above, overlap is as likely. But a vector of length `ℓ` is
         // off by the angle `ν/ℓ`, and the plane across it low by the square of that: by more than `ν` if `ℓ² < ν`.
-        if !(reach > -state.length || state.length * state.length < self.noise) {
+        let is_short = !self.failed && state.length * state.length < self.noise;
+        if !(reach > -state.length || is_short) {
             return None;
         }
         let model_error = self.noise + gap * V::Scalar::from_f64(MODEL_ERROR[self.failures]);
