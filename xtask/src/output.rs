@@ -14,3 +14,15 @@ pub(crate) fn failed(what: &str, why: &io::Error) -> ExitCode {
     let _ = writeln!(io::stderr(), "error: {what}: {why}");
     ExitCode::from(2)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whoever_closes_the_pipe_has_read_enough() {
+        let status = |kind: io::ErrorKind| format!("{:?}", failed("cannot write", &kind.into()));
+        assert_eq!(status(io::ErrorKind::BrokenPipe), format!("{:?}", ExitCode::SUCCESS), "a pipe that is closed");
+        assert_eq!(status(io::ErrorKind::StorageFull), format!("{:?}", ExitCode::from(2)), "a disk that is full");
+    }
+}

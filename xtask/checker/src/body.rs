@@ -45,17 +45,34 @@ impl Set {
 }
 
 impl Set {
-    /// A bound on all numbers that computing a point of the set in floating point comes by, of which rounding takes its
-    /// share: in a pose far away and back again these are far larger than the set.
+    /// A bound on the sizes of the numbers that computing a point of the set in floating point comes by, each of which
+    /// rounding takes its share of: the sum of those of every map on the way. In a pose far away and back again these are
+    /// far larger than the set, and in a chain of poses they are many.
     pub(crate) fn magnitude(&self) -> Interval {
+        let [size, before] = self.sizes();
+        &size + &before
+    }
+
+    /// The size of the set, and the sum of the sizes of what it is made of, in its own unit.
+    fn sizes(&self) -> [Interval; 2] {
+        let zero = Interval::zero;
         match self {
             Self::Points(points) => {
-                points.iter().map(Vector::length).fold(Interval::zero(), |most, length| most.max(&length))
+                [points.iter().map(Vector::length).fold(zero(), |most, length| most.max(&length)), zero()]
             }
-            Self::Ball => Interval::from(1.0),
-            Self::Image(of, rows, at) => &(&stretch(rows) * &of.magnitude()) + &at.length(),
-            Self::Sum(of) => of.iter().map(Self::magnitude).fold(Interval::zero(), |sum, part| &sum + &part),
-            Self::Hull(of) => of.iter().map(Self::magnitude).fold(Interval::zero(), |most, part| most.max(&part)),
+            Self::Ball => [Interval::from(1.0), zero()],
+            Self::Image(of, rows, at) => {
+                let ([size, before], stretch) = (of.sizes(), stretch(rows));
+                let size = &stretch * &size;
+                [&size + &at.length(), &size + &(&stretch * &before)]
+            }
+            Self::Sum(of) => {
+                of.iter().map(Self::sizes).fold([zero(), zero()], |[a, b], [size, before]| [&a + &size, &b + &before])
+            }
+            Self::Hull(of) => of
+                .iter()
+                .map(Self::sizes)
+                .fold([zero(), zero()], |[a, b], [size, before]| [a.max(&size), b.max(&before)]),
         }
     }
 }

@@ -193,7 +193,10 @@ impl<'c> Case<'c> {
         let allow = Interval::from(allow);
         let bound =
             |name, give: Interval| Ok::<_, Unread>(number(name)?.or_else(|| value.as_ref().map(|value| value + &give)));
-        let claimed = bound("lower", -&allow)?.zip(bound("upper", allow.clone())?);
+        // By its own words a hit that is not certain may be none.
+        let is_open = answer.get("certain").and_then(Value::as_bool) == Some(false);
+        let above = if is_open { Interval::infinity() } else { allow.clone() };
+        let claimed = bound("lower", -&allow)?.zip(bound("upper", above)?);
         let claimed = claimed.map(|(lower, upper)| Bounds { lower, upper });
         let is_hit = if question.kind.is_cast() { Some(flag(field(answer, "hit")?)?) } else { None };
         let until = value.as_ref().unwrap_or(&question.begin);
@@ -272,12 +275,17 @@ fn value(case: &Case<'_>, _: &Value) -> Finding {
         return Err("it is beyond the end".to_owned());
     }
     let ends = [("lower", case.is_not_before(&claimed.lower)), ("upper", case.is_not_after(&claimed.upper))];
+    // A number alone is claimed to its last digit, but not disproved for that.
+    let digit = &case.question.rounding * &value.absolute();
+    let is_far = case.proved.upper.is_less_than(&(&claimed.lower - &digit))
+        || (&claimed.upper + &digit).is_less_than(&case.proved.lower);
     let missing = ends.into_iter().filter(|(name, _)| case.answer.get(name).is_none());
-    missing.map(|(_, finding)| finding).fold(Ok(true), |all, one| match (all, one) {
-        (Ok(false), _) | (_, Ok(false)) => Ok(false),
-        (Err(why), _) | (_, Err(why)) => Err(why),
-        _ => Ok(true),
-    })
+    let found: Vec<Finding> = missing.map(|(_, finding)| finding).collect();
+    match found.contains(&Ok(false)) {
+        true if is_far => Ok(false),
+        true => Err("it is right to its last digit only; the query may `allow` that".to_owned()),
+        false => found.into_iter().find(Result::is_err).unwrap_or(Ok(true)),
+    }
 }
 
 /// The lower end of the bracket, by the plane.
@@ -402,7 +410,7 @@ fn closest_point(case: &Case<'_>, value: &Value, of: usize) -> Finding {
     let toward = normal.as_ref().map(|n| n.times(&Interval::from(if of == 0 { -1.0 } else { 1.0 })));
     let off = case.question.bodies[of].0.distance_from(&point, toward.as_ref(), &case.slack);
     if !off.is_at_most(&case.slack) {
-        return Err(format!("it is not proved to be in its body DBG {}", off.to_f64() / case.slack.to_f64()));
+        return Err("it is not proved to be in its body".to_owned());
     }
     let points = ["point_a", "point_b"].map(|name| case.reader.vector(field(case.answer, name)?));
     let [a, b] = points;
@@ -461,7 +469,7 @@ fn status(case: &Case<'_>, value: &Value) -> Finding {
         let width = &width * &approach.unwrap_or_else(|| question.direction.length());
         (width, &(&(&size + &size) * &case.slack).root() + &(&question.tolerance * &size))
     } else {
-        (width, &case.slack + &(&question.tolerance * &claimed.upper))
+        (width, &(&case.slack * &Interval::from(16.0)) + &(&question.tolerance * &claimed.upper))
     };
     within_rounding(width.is_at_most(&most), "the bracket is too wide to have converged")
 }

@@ -57,7 +57,8 @@ fn determinants_of_whole_numbers_are_exact() {
 
 /// How far a shape of the query format reaches, as the checker reads it.
 fn reach(shape: &Value, direction: [f64; 3]) -> Interval {
-    let reader = Reader { single: false, mesh: &|path| Err(format!("no mesh is expected, and none is at {path}")) };
+    let mesh = |path: &str| Err(format!("no mesh is expected, and none is at {path}"));
+    let reader = Reader::new(&json!({}), &mesh).expect("double precision");
     let body = reader.body(shape).unwrap_or_else(|why| panic!("{why}: {shape}"));
     let direction = Vector(direction.map(Interval::from));
     let (point, value) = body.core.support(&direction);
@@ -111,5 +112,66 @@ fn shapes_reach_as_far_as_their_formulas_say() {
             "{shape} along {direction:?}: {}",
             reach.to_f64()
         );
+    }
+}
+
+/// The bound on the distance of a point from a body is no less than the distance, and not much more, on surfaces and off
+/// them.
+#[test]
+fn distances_of_points_from_bodies_are_bounded() {
+    let mesh = |path: &str| Err(format!("no mesh is expected, and none is at {path}"));
+    let upright = |kind: &str| json!({"type": kind, "half_height": 2.0, "radius": 3.0});
+    let flat = json!({"type": "cuboid", "half_extents": [1, 2, 3]});
+    let cases = [
+        (upright("capsule"), [3.0, 1.0, 0.0], [1.0, 0.0, 0.0], 0.0),
+        (upright("cylinder"), [3.0, 1.0, 0.0], [1.0, 0.0, 0.0], 0.0),
+        (upright("cylinder"), [1.0, 2.5, 1.0], [0.0, 1.0, 0.0], 0.5),
+        (upright("cone"), [0.0, 2.0, 0.0], [0.0, 1.0, 0.0], 0.0),
+        (flat.clone(), [1.0, 0.3, -0.7], [1.0, 0.0, 0.0], 0.0),
+        (flat, [1.25, 0.3, -0.7], [1.0, 0.0, 0.0], 0.25),
+        (
+            json!({"type": "ellipsoid", "center": [0, 0, 0], "semi_axes": [1e4, 1, 2]}),
+            [0.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+            0.0,
+        ),
+        (
+            json!({"type": "ellipsoid", "center": [0, 0, 0], "semi_axes": [3, 4, 1]}),
+            [0.1, 0.2, 0.3],
+            [1.0, 0.0, 0.0],
+            0.0,
+        ),
+    ];
+    for (shape, at, normal, expected) in cases {
+        let reader = Reader::new(&json!({}), &mesh).expect("double precision");
+        let body = reader.body(&shape).unwrap_or_else(|why| panic!("{why}: {shape}"));
+        let [at, normal] = [at, normal].map(|v| Vector(v.map(Interval::from)));
+        for toward in [Some(&normal), None] {
+            let bound = body.distance_from(&at, toward, &Interval::from(1e-12));
+            let most = if toward.is_some() { expected + 1e-11 } else { expected + 1e-6 };
+            assert!(is_between(&bound, expected, most), "{shape}: {} for {expected}", bound.to_f64());
+        }
+    }
+}
+
+/// Every field of a shape is read, and every vector is of the dimension of the others.
+#[test]
+fn shapes_with_a_field_that_is_not_read_are_refused() {
+    let mesh = |path: &str| Err(format!("no mesh is expected, and none is at {path}"));
+    for (shape, named) in [
+        (json!({"type": "ball", "radius": 1, "half_height": 1}), "half_height"),
+        (json!({"type": "ellipsoid", "center": [0, 0], "matrix": [[1, 0], [0, 1]], "rotation": 1}), "not read"),
+        (json!({"type": "hull", "of": [{"type": "point", "at": [0, 0], "radius": 1}]}), "radius"),
+        (json!({"type": "segment", "points": [[0, 0], [1, 0, 0]]}), "dimension"),
+        (
+            json!({"type": "posed", "rotation": 1, "translation": [0, 0, 0], "of": {"type": "ball", "radius": 1}}),
+            "dimension",
+        ),
+        (json!({"type": "triangle", "points": [[0, 0], [1, 0]]}), "2 points"),
+        (json!({"type": "cuboid", "half_extents": [1, -1]}), "negative"),
+    ] {
+        let reader = Reader::new(&json!({}), &mesh).expect("double precision");
+        let read = reader.body(&shape).err().unwrap_or_default();
+        assert!(read.contains(named), "{read:?} should name {named}: {shape}");
     }
 }

@@ -326,6 +326,12 @@ mod tests {
                 "target.rotation: expected an angle or a quaternion [x, y, z, w]",
             ),
             (
+                r#"{"query":"distance","a":{"type":"ball","radius":1},"b":{"type":"half_space","normal":[0,0],"offset":0}}"#
+                    .to_owned(),
+                Kind::InvalidShape,
+                "b.normal must have a direction, but is zero, or too short or long for the precision",
+            ),
+            (
                 r#"{"query":"inscribed_ellipsoid","halfspaces":[{"normal":[1,0]}]}"#.to_owned(),
                 Kind::Parse,
                 "the field \"offset\" of halfspaces[0] is missing",
@@ -340,6 +346,23 @@ mod tests {
         for (line, kind, message) in cases {
             let problem = refused(&line);
             assert_eq!((problem.kind, problem.message.as_str()), (kind, message), "{line}");
+        }
+    }
+
+    /// Of a pose that rounding may turn by a radian nothing is known, least of all that it touches something.
+    #[test]
+    fn a_path_whose_poses_are_lost_in_rounding_is_undecided() {
+        let arm = r#"{"joint":0,"shapes":[{"type":"posed","translation":[2,0,0],"of":{"type":"ball","radius":0.5}}]}"#;
+        let ball = r#"{"type":"posed","translation":[1,2,0],"of":{"type":"ball","radius":0.2}}"#;
+        for (kind, from, to) in [("revolute", "1e15", "1e15"), ("revolute", "0", "-1e16"), ("prismatic", "0", "1e300")]
+        {
+            let line = format!(
+                r#"{{"query":"path","joints":[{{"type":"{kind}","parent":-1,"axis":[0,0,1]}}],"links":[{arm}],
+                "waypoints":[[{from}],[{to}]],"obstacles":[{ball}]}}"#
+            );
+            let object = json::object(line.as_bytes()).expect("JSON");
+            let asked = question(&object, &Meshes::relative_to("")).expect("a path").ask();
+            assert!(matches!(&asked, Err(why) if why.kind == Kind::NotConverged), "{asked:?}: {line}");
         }
     }
 

@@ -10,6 +10,7 @@ use crate::validate::score::scalar_of;
 use crate::wire::answer::Line;
 use crate::wire::answer::as_read;
 use crate::wire::fields::Object;
+use crate::wire::json;
 use serde_json::{Value, json};
 
 use super::fact::Bodies;
@@ -139,7 +140,7 @@ fn claim(question: &Object, answer: &Object) -> Claim {
 pub fn from_file(path: &Path, questions: &[Question]) -> Result<Witness, String> {
     let text = fs::read_to_string(path).map_err(|why| format!("cannot read {}: {why}", path.display()))?;
     let read = |(k, line): (usize, &str)| -> Result<Object, String> {
-        serde_json::from_str(line).map_err(|why| format!("{}, line {}: {why}", path.display(), k + 1))
+        json::object(line.as_bytes()).map_err(|why| format!("{}, line {}: {}", path.display(), k + 1, why.message))
     };
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()).map(read);
     let head = lines.next().unwrap_or_else(|| Err(format!("{} is empty", path.display())))?;
@@ -147,6 +148,9 @@ pub fn from_file(path: &Path, questions: &[Question]) -> Result<Witness, String>
     for answer in lines {
         let answer = answer?;
         let id = answer.get("id").and_then(Value::as_str).ok_or("an answer has no id")?.to_owned();
+        if answers.contains_key(&id) {
+            return Err(format!("{}: there are two answers to {id:?}", path.display()));
+        }
         answers.insert(id, answer);
     }
     let reply = |question: &Question| {

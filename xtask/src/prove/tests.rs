@@ -80,11 +80,12 @@ fn true_claims_are_proved_and_false_ones_disproved() {
     }
 }
 
-/// An answer of some width that is proved, and claims something of a distance or a time that is not zero.
+/// An answer of some width that is proved, and claims something of a distance or a time that is not the least there is.
 fn proved_line(rng: &mut Rng) -> Value {
     loop {
         let line = answered(&query(PLANES, rng));
-        let claims = line["answer"]["lower"].as_f64().is_some_and(|lower| lower > 1e-3);
+        let begin = line["min_lambda"].as_f64().unwrap_or(0.0);
+        let claims = line["answer"]["lower"].as_f64().is_some_and(|lower| lower > begin + 1e-3);
         if claims && verdict(&line) == Verdict::Proved {
             return line;
         }
