@@ -33,7 +33,7 @@ fn combinators_are_their_formulas_in<V: Vector>(primitive: fn(V::Scalar) -> Boxe
     let shapes = strategies::size::<V::Scalar>()
         .prop_flat_map(move |size| (strategies::combined(primitive(size), size), Just(size)));
     let strategy = (shapes, strategies::direction::<V>(), strategies::direction::<V>());
-    let mut runner = TestRunner::new(ProptestConfig { failure_persistence: None, ..convex_support::laws::config(256) });
+    let mut runner = TestRunner::new(ProptestConfig { failure_persistence: None, ..laws::config(256) });
     let outcome = runner.run(&strategy, |((a, size), d, e)| {
         // No combination of the strategies reaches farther than some twenty sizes.
         let r = size;
