@@ -7,7 +7,7 @@ use proptest::test_runner::{RngSeed, contextualize_config};
 /// The configuration of property tests that draw the same cases in every run, as that of convex-support, unless
 /// `PROPTEST_RNG_SEED` or `PROPTEST_CASES` say otherwise.
 pub(crate) fn config(cases: u32) -> ProptestConfig {
-    let rng_seed = RngSeed::Fixed(2004_11_20);
+    let rng_seed = RngSeed::Fixed(20_041_120);
     contextualize_config(ProptestConfig { cases, rng_seed, ..ProptestConfig::default() })
 }
 
