@@ -91,7 +91,8 @@ pub struct SignedDistance<V: Vector> {
     /// several ways out are equally short, it is the direction of one of them.
     pub normal: V,
     /// The point of `a` closest to `b`, or deepest in it. It is in `a` but for rounding, 8ε of the sizes of both shapes
-    /// and their offset, however the search ended. Uncertainty of the way out is in the bounds.
+    /// and their offset plus the error of its core, however the search ended. Uncertainty of the way out is in the
+    /// bounds.
     pub point_a: V,
     /// The point of `b` such that `point_a − point_b` is the signed distance times the normal, with the same accuracy.
     /// The normal is that of a plane, across which points of curved shapes may be off by √(2·s·(`upper` − `lower`)),

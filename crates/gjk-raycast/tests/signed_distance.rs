@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use crate::common::behind_pointers::signed_distance;
-use crate::common::{at, cuboid, s, turned, v};
+use crate::common::{apart, at, cuboid, s, turned, v};
 use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle,
@@ -404,5 +404,17 @@ fn the_normal_is_that_of_the_plane_that_proves_the_bound() {
         assert!(plane >= found.lower - 8.0 * f32::EPSILON, "{plane} {found:?}");
         let angle = found.normal.as_dvec3().cross(known.normal).length();
         assert!(angle < 2e-3, "{angle:e} {found:?}");
+    }
+}
+
+/// Both are readings of one search, so that neither knows of a gap more than the other does.
+#[test]
+fn a_distance_is_known_as_well_as_a_signed_one() {
+    let cylinder = Cylinder::<DVec3>::new(0.5, 0.25).expect(VALID);
+    for height in [4.0, 1.5, 1.125, 1.0625, 1.0, 0.75] {
+        let cone = at(Cone::<DVec3>::new(0.5, 0.25).expect(VALID), [0.25, height, 0.125]);
+        let (apart, signed) = (apart(&cylinder, &cone), ask(&cylinder, &cone));
+        assert_eq!((apart.lower, apart.upper), (signed.lower.max(0.0), signed.upper.max(0.0)), "at {height}");
+        assert_eq!(apart.overlap, signed.overlap, "at {height}");
     }
 }
