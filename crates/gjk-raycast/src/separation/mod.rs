@@ -159,12 +159,12 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
         // Where rounding decides, it has to decide alike wherever a query begins.
         return separation::<V, IS_DEPTH>(cores, &wanted.plain(), observer);
     }
-    if is_near && closest.is_none() {
-        if tells_all(cores, Some(&state))
-            && let Some(near) = &cores.near
-        {
-            return Separation::of_near_contact(cores, near).with_best_plane(cores, &state);
-        }
+    if is_near
+        && closest.is_none()
+        && tells_all(cores, Some(&state))
+        && let Some(near) = &cores.near
+    {
+        return Separation::of_near_contact(cores, near).with_best_plane(cores, &state);
     }
     let is_known = if IS_DEPTH {
         end == End::Separated && cores.is_well_apart(state.length)
