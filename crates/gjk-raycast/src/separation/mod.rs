@@ -159,12 +159,12 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
         // Where rounding decides, it has to decide alike wherever a query begins.
         return separation::<V, IS_DEPTH>(cores, &wanted.plain(), observer);
     }
-    if is_near && closest.is_none() {
-        if tells_all(cores, Some(&state))
-            && let Some(near) = &cores.near
-        {
-            return Separation::of_near_contact(cores, near).with_best_plane(cores, &state);
-        }
+    if is_near
+        && closest.is_none()
+        && tells_all(cores, Some(&state))
+        && let Some(near) = &cores.near
+    {
+        return Separation::of_near_contact(cores, near).with_best_plane(cores, &state);
     }
     let is_known = if IS_DEPTH {
         end == End::Separated && cores.is_well_apart(state.length)
@@ -423,17 +423,19 @@ impl<V: Vector> Separation<V> {
             true => (signed_lower.max(zero), upper.max(zero)),
             false => (zero, V::Scalar::infinity()),
         };
-        let allowed = cores.widest();
+        let (allowed, three) = (cores.widest(), V::Scalar::from_f64(3.0));
         let is_narrow = upper - lower <= allowed + wanted.tolerance.max(zero) * lower || lower > wanted.options.limit;
-        // Bodies within rounding of contact touch if a second measurement that was not cut short says so.
+        let value = self.value(cores);
+        // Bodies touch if their points are as near as their error, and a second measurement that was not cut short has
+        // not found a plane between them.
         let is_cut_short = self.status == Status::IterationLimit || cores.iterations >= wanted.options.max_iterations;
-        let is_decided = lower > zero || upper <= zero || cores.near.is_some() && !is_cut_short;
+        let is_decided =
+            lower > zero || upper <= zero || cores.near.is_some() && !is_cut_short && value * three <= allowed;
         let status = match is_bounded && is_narrow && is_decided {
             true => Status::Converged,
             false if is_cut_short => Status::IterationLimit,
             false => Status::Stalled,
         };
-        let value = self.value(cores);
         let is_met = upper <= zero || status == Status::Converged || self.overlap.unwrap_or(value <= zero);
         let overlap = is_met && !(lower > zero);
         let is_deep = overlap && !(value >= -upper);
