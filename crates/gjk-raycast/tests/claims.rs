@@ -54,6 +54,6 @@ fn planes_refute_bounds_points_and_hits() {
     let ray = Ray { source: glam::DVec3::X * 3.0, direction: glam::DVec3::NEG_X };
     let missed = laws::ray_judged(&ball, ray, Default::default(), &[], &Everywhere(1.0));
     assert!(missed.broken.iter().any(|broken| broken.law == Law::Bound), "{missed}");
-    let right = laws::ray(&ball, ray, Default::default(), &[]);
+    let right = laws::pair(&ball, &beside, &[glam::DVec3::Y]);
     assert!(right.broken.is_empty() && right.examined > 50, "{right}");
 }
