@@ -130,12 +130,12 @@ pub fn judge(case: &Object, answer: &Object) -> Verdict {
 /// How the reason begins that an answer is wrong whose bracket is wide although it has converged.
 const WIDE: &str = "wide although converged";
 
-/// Counts what an answer says of itself and is not so: a bracket that is wide although the answer has converged is wrong,
-/// and other claims that are false are told beside it.
+/// Counts what an answer says of itself and is not so: if the bracket of the answer given is wide although it has
+/// converged, it is wrong. Other claims that are false, and those of answers with other options, are told beside it.
 pub fn judge_claims(report: Report, verdict: &mut Verdict) {
     for broken in report.broken {
         match broken.law {
-            Law::Width => verdict.wrong.push(format!("{WIDE}: {broken}")),
+            Law::Width if broken.what.contains("by default") => verdict.wrong.push(format!("{WIDE}: {broken}")),
             _ => verdict.soft.push(format!("claim: {broken}")),
         }
     }
