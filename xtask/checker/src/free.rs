@@ -29,8 +29,11 @@ pub struct Parts {
     pub not_proved: u64,
 }
 
+/// How the value of a field is checked.
+type Check<C> = fn(&C, &Value) -> Finding;
+
 /// What the fields of the answer to a `path` claim.
-fn path_claims<'t>() -> [(&'static str, fn(&PathCase<'t>, &Value) -> Finding); 15] {
+fn path_claims<'t>() -> [(&'static str, Check<PathCase<'t>>); 15] {
     [
         ("free", PathCase::free),
         ("edge", PathCase::named),
@@ -51,7 +54,7 @@ fn path_claims<'t>() -> [(&'static str, fn(&PathCase<'t>, &Value) -> Finding); 1
 }
 
 /// What those of the answer to a `joint_box` claim.
-const BOX: &[(&str, fn(&BoxCase, &Value) -> Finding)] = &[
+const BOX: &[(&str, Check<BoxCase>)] = &[
     ("meets", BoxCase::meets),
     ("values", BoxCase::named),
     ("body", BoxCase::named),

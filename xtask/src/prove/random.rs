@@ -59,7 +59,7 @@ pub(super) const ROBOTS: &[&str] = &["path", "joint_box"];
 
 /// A query of one of some kinds that have a certificate: none of a half-space, and none that asks for what no
 /// certificate of ours is made for: derivatives, what happens after a start in contact, a start within the target
-/// distance, and what the papers' method leaves open.
+/// distance or at a `min_lambda`, and what the papers' method leaves open.
 pub(super) fn query(kinds: &[&str], rng: &mut Rng) -> Value {
     loop {
         let name = kinds[rng.below(kinds.len() as u64) as usize];
@@ -70,7 +70,7 @@ pub(super) fn query(kinds: &[&str], rng: &mut Rng) -> Value {
             if let Some(fields) = query.as_object_mut() {
                 let _ = fields.remove("gradient");
             }
-            let unread = ["start_in_contact", "target_distance", "method"];
+            let unread = ["start_in_contact", "target_distance", "min_lambda", "method"];
             let is_read = query["b"]["type"] != "half_space" && unread.iter().all(|name| query.get(name).is_none());
             if is_read || ROBOTS.contains(&name) {
                 return query;
