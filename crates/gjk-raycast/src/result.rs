@@ -269,8 +269,8 @@ pub struct Cast<H, V: Vector> {
     /// They have a point in common at this time, which is not after the end of the cast. It need not be the first, if
     /// bodies without an inside have passed through one another in between. It is infinite if no such time is known: for
     /// a miss, and for a hit that may be a miss, since the bodies graze each other, touch at the start, or first touch
-    /// at the end, within rounding. Bodies that may [begin in
-    /// contact](crate::StartInContact::IfDeeper) have got deeper, or touched again, by then.
+    /// at the end, within rounding. Bodies that may [begin in contact](crate::StartInContact::IfDeeper) get deeper from
+    /// then on at the latest, or have touched again.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// How the search ended.

@@ -60,8 +60,15 @@ fn asked<V: Vector>(bodies: [&dyn SupportMap<Vector = V>; 2], velocities: [V; 2]
     let [a, b] = bodies;
     let (slack, [velocity_a, velocity_b]) = (slack(bodies), velocities);
     let options = LinearCastOptions::new().with_start_in_contact(StartInContact::IfDeeper);
-    let warm = |i: usize| options.with_axis(if i % 2 == 0 { V::axis(i / 2) } else { -V::axis(i / 2) });
-    let all = [options, options.with_method(CastMethod::Gjk), warm(0), warm(1), warm(2), warm(3)];
+    let warm = |axis: V| options.with_axis(axis);
+    let all = [
+        options,
+        options.with_method(CastMethod::Gjk),
+        warm(V::axis(0)),
+        warm(V::axis(1)),
+        warm(-V::axis(0)),
+        warm(-V::axis(1)),
+    ];
     let asked: Vec<LinearCast<V>> = all
         .into_iter()
         .map(|options| linear_cast(a, b, Motion { velocity_a, velocity_b }, options).expect("finite"))
