@@ -6,7 +6,7 @@ use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
 use crate::cast::{
-    CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, cast, certain_closely, settle_start, sliding,
+    CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, cast, certain_closely, settle_ends, sliding,
 };
 use crate::distance::distance_of_any;
 use crate::extra::in_static;
@@ -164,14 +164,14 @@ compiled_once! {
         let (whole, wanted) = ray_of(motion, cores.each_ref().map(|core| core.origin), options);
         let CastRay { ray, direction_error, .. } = whole;
         // Of no other pair is a crossing known.
-        if cores.iter().any(|core| matches!(core.kind, CoreKind::Point(_)))
-            && let Some(known) = certain_closely(body, ray, direction_error, &wanted, observer)
-        {
-            return answer(&ObstacleCast::of_certain(&known, body, ray), [a, b], cores, motion, options);
-        }
-        let mut cast = cast(body, whole, &wanted, observer);
+        let is_point = |core: &Core<V>| matches!(core.kind, CoreKind::Point(_));
+        let known = || certain_closely(body, ray, direction_error, &wanted, observer);
+        let mut cast = match cores.iter().any(is_point).then(known).flatten() {
+            Some(known) => ObstacleCast::of_certain(&known, body, ray),
+            None => cast(body, whole, &wanted, observer),
+        };
         let skin = options.target_distance.max(Scalar::ZERO);
-        settle_start(&mut cast, RayBodies { a, skin, b, direction: ray.direction }, &wanted);
+        settle_ends(&mut cast, RayBodies { a, skin, b, direction: ray.direction, direction_error }, &wanted);
         answer(&cast, [a, b], cores, motion, options)
     }
 }
