@@ -6,14 +6,14 @@ use convex_support::{Core, CoreKind, Hint, Posed, Scalar, SupportMap, Vector, co
 use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
-use crate::cast::{CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, cast, certain_closely, settle_start};
+use crate::cast::{CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, cast, certain_closely, settle_ends};
 use crate::distance::distance_of_any;
 use crate::extra::in_static;
 use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::signed_distance::signed_distance_of_any;
 use crate::{
-    DistanceOptions, HalfSpace, Impact, Iterate, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray,
+    DistanceOptions, HalfSpace, Impact, Iterate, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCast,
     RayCastError, RayCastOptions, SignedDistance, SignedDistanceOptions, StartInContact, Status, WarmStart,
 };
 
@@ -164,16 +164,16 @@ compiled_once! {
         let (whole, wanted) = ray_of(motion, cores.each_ref().map(|core| core.origin), options);
         let CastRay { ray, direction_error, .. } = whole;
         // Of no other pair is a crossing known.
-        if cores.iter().any(|core| matches!(core.kind, CoreKind::Point(_)))
-            && let Some(known) = certain_closely(body, ray, direction_error, &wanted, observer)
-            // Where bodies begin in contact, only a search or a further look has a point of both.
-            && (known.upper > Scalar::ZERO || options.extra.get().is_some())
-        {
-            return answer(&ObstacleCast::of_certain(&known, body, ray), [a, b], cores, motion, options);
-        }
-        let mut cast = cast(body, whole, &wanted, observer);
+        let is_point = |core: &Core<V>| matches!(core.kind, CoreKind::Point(_));
+        let known = || certain_closely(body, ray, direction_error, &wanted, observer);
+        // Where bodies begin in contact, only a search or a further look has a point of both.
+        let is_told = |known: &RayCast<V>| known.upper > <V::Scalar as Scalar>::ZERO || options.extra.get().is_some();
+        let mut cast = match cores.iter().any(is_point).then(known).flatten().filter(is_told) {
+            Some(known) => ObstacleCast::of_certain(&known, body, ray),
+            None => cast(body, whole, &wanted, observer),
+        };
         let skin = options.target_distance.max(Scalar::ZERO);
-        settle_start(&mut cast, RayBodies { a, skin, b, direction: ray.direction }, &wanted);
+        settle_ends(&mut cast, RayBodies { a, skin, b, direction: ray.direction, direction_error }, &wanted);
         answer(&cast, [a, b], cores, motion, options)
     }
 }

@@ -6,7 +6,7 @@ use num_traits::Float;
 
 use crate::body::{CastBody, Measures, Single};
 use crate::cast::{
-    CastHit, CastRay, LocalRay, ObstacleCast, Part, RayBodies, cast, certain, certain_closely, is_plain, settle_start,
+    CastHit, CastRay, LocalRay, ObstacleCast, Part, RayBodies, cast, certain, certain_closely, is_plain, settle_ends,
     show,
 };
 use crate::observer::Observer;
@@ -110,28 +110,33 @@ fn searched<S: SupportMap + ?Sized>(
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     ray.check(&options)?;
     let mut body = Single::new(target);
-    if let Some(answer) = certain_closely(&mut body, ray, Scalar::ZERO, &options, &mut observer) {
-        return Ok(answer);
+    let known = certain_closely(&mut body, ray, Scalar::ZERO, &options, &mut observer);
+    match known {
+        Some(answer) if !(answer.upper > options.max_lambda) || answer.outcome.is_miss() => Ok(answer),
+        _ => Ok(by_search(&mut body, &WithoutLines(target), ray, &options, known.as_ref(), &mut observer)),
     }
-    Ok(by_search(&mut body, &WithoutLines(target), ray, &options, &mut observer))
 }
 
 compiled_once! {
-    /// The cast by a search, for a body that is the shape.
+    /// The cast by a search, for a body that is the shape; or of which all is known but whether it ends before its hit.
     fn by_search<V>(
         body: &mut dyn CastBody<Vector = V>,
         shape: Shape<'_, V>,
         ray: Ray<V>,
         options: &RayCastOptions<V>,
+        known: Option<&RayCast<V>>,
         observer: &mut Observer<'_, V>,
     ) -> RayCast<V> {
         if options.min_lambda > Scalar::ZERO {
             return late(body, ray, *options, observer);
         }
-        let mut cast = cast(body, CastRay::of(ray, Part::Whole), options, observer);
+        let mut cast = match known {
+            Some(known) => ObstacleCast::of_certain(known, body, ray),
+            None => cast(body, CastRay::of(ray, Part::Whole), options, observer),
+        };
         if let Ok(tip) = Point::new(ray.source) {
             let b = &WithoutLines(&tip);
-            settle_start(&mut cast, RayBodies { a: shape, skin: Scalar::ZERO, b, direction: ray.direction }, options);
+            settle_ends(&mut cast, RayBodies { a: shape, skin: Scalar::ZERO, b, direction: ray.direction, direction_error: Scalar::ZERO }, options);
         }
         answer(cast, ray)
     }

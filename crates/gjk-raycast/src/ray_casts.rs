@@ -7,7 +7,7 @@ use convex_support::numerics::widest::{Loop, widest};
 use convex_support::{CrossedByLine, LINES, Lines, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
-use crate::cast::is_plain;
+use crate::cast::{is_plain, last_number};
 use crate::{Outcome, Ray, RayCast, RayCastError, RayCastOptions, ray_cast};
 
 /// Rays after which a batch drops the warm start, so that its pieces can be cast on any number of threads with the
@@ -207,15 +207,14 @@ compiled_once! {
             fn run(self) {
                 let Self(lines, end, entries) = self;
                 let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+                let last = last_number(end);
                 for (line, slot) in entries.iter_mut().enumerate().take(LINES) {
                     let [lower, upper] = [lines.bounds[0][line], lines.bounds[1][line]];
                     let (lambda, is_missed) = (lines.entry[line], lines.known[line] < zero);
                     // As `certain` of one ray.
-                    let is_after_end = lower > end;
-                    let enters = (lower > zero) & (upper <= end);
-                    let is_certain = is_missed | ((enters | is_after_end) & (upper < infinity));
+                    let is_hit = !is_missed & (lower > zero) & (upper <= last);
+                    let is_certain = is_missed | is_hit | (lower > end) & (upper < infinity);
                     lines.known[line] = if is_certain { lines.known[line] } else { zero };
-                    let is_hit = !(is_missed | is_after_end);
                     let of_hit = |x: V::Scalar, else_: V::Scalar| if is_hit { x } else { else_ };
                     *slot = RayEntry {
                         lambda: of_hit(lambda, infinity),

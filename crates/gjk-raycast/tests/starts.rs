@@ -128,7 +128,7 @@ fn a_graze_is_decided() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// The end of the ray at the hit belongs to the ray: two ulps less may not reach, and what reaches is a hit.
+/// The end of the ray at the hit belongs to the ray: two ulps less is no hit, and what reaches is one.
 #[test]
 fn the_end_at_the_hit() {
     fn run<V: Vector3>() {
@@ -138,10 +138,12 @@ fn the_end_at_the_hit() {
                 let free = cast(&body, source, direction, infinity::<V>()).outcome.hit();
                 let Some(hit) = free else { continue };
                 let lambda = hit.lambda.as_f64();
-                for (ulp, reaches) in [(-2.0, false), (0.0, true), (2.0, true)] {
+                for (ulp, reaches) in [(-64.0, false), (-2.0, false), (0.0, true), (2.0, true)] {
                     let answer = cast(&body, source, direction, s::<V>(lambda * (1.0 + ulps::<V>(ulp))));
                     assert_eq!(answer.outcome.hit().is_some(), reaches, "{name} {source:?} {ulp} ulp: {answer:?}");
-                    assert_eq!(answer.outcome.is_miss(), !reaches, "{name} {source:?} {ulp} ulp: {answer:?}");
+                    // Two ulps may be within the rounding of a curved body's gap, so that a miss is not certain.
+                    let is_certain = answer.outcome.is_miss() || reaches || ulp > -64.0;
+                    assert!(is_certain, "{name} {source:?} {ulp} ulp: {answer:?}");
                 }
             }
         }

@@ -3,7 +3,7 @@
 use convex_support::numerics::bound::roundings;
 use convex_support::numerics::range::comfortable_unit_of_length;
 use convex_support::{CertainCrossing, LineQuery, Scalar, Vector};
-use num_traits::Float;
+use num_traits::Float as _;
 
 use super::bracket::Bracket;
 use super::line::Line;
@@ -41,25 +41,29 @@ pub(crate) fn certain<V: Vector>(
         }
         CertainCrossing::Enters { entry, bounds, normal } => {
             let [earliest, latest] = bounds;
-            let is_after_end = earliest > options.max_lambda;
             // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN and
             // infinity decide nothing.
-            let is_hit = (earliest > zero) & (latest <= options.max_lambda);
-            if !((is_hit | is_after_end) & (latest < infinity)) {
-                return None;
-            }
-            if is_after_end {
+            if (earliest > zero) & (latest <= last_number(options.max_lambda)) {
+                (Outcome::Hit(RayHit { lambda: entry, point: ray.at(entry), normal: Some(normal) }), bounds)
+            } else if (earliest > options.max_lambda) & (latest < infinity) {
                 missed(normal)
             } else {
-                (Outcome::Hit(RayHit { lambda: entry, point: ray.at(entry), normal: Some(normal) }), bounds)
+                return None;
             }
         }
     };
     Some(RayCast { outcome, lower, upper, status: Status::Converged, iterations: 1 })
 }
 
+/// The end of a ray, or the largest number if it has none; NaN stays NaN.
+#[inline(always)]
+pub(crate) fn last_number<S: Scalar>(end: S) -> S {
+    if end > S::max_value() { S::max_value() } else { end }
+}
+
 /// The same, in plain numbers or in twice the precision, for a body and a ray that may begin in it and whose direction
-/// may be wrong by some part of its length; an observer sees the plane of the answer.
+/// may be wrong by some part of its length; an observer sees the plane of the answer. The entry may be behind the end
+/// of the ray, if only rounding decides whether it is.
 #[inline(always)]
 pub(crate) fn certain_closely<B: CastBody + ?Sized>(
     body: &mut B,
@@ -92,10 +96,7 @@ pub(crate) fn certain_closely<B: CastBody + ?Sized>(
             Some(crossing) if !is_behind => {
                 // Where only rounding decides whether the ray ends before it enters, it enters where a longer one does.
                 let longer = || certain(crossing, ray, &RayCastOptions { max_lambda: infinity, ..*options });
-                let mut answer = certain(crossing, ray, options).or_else(longer)?;
-                answer.upper = answer.outcome.until(options.max_lambda, answer.upper, |hit| hit.lambda);
-                answer.status = answer.status.of(&answer.outcome, answer.upper < infinity);
-                break answer;
+                break certain(crossing, ray, options).or_else(longer)?;
             }
             Some(CertainCrossing::Enters { bounds: [earliest, latest], normal, .. }) => {
                 let (outcome, bound) = if latest <= zero && options.max_lambda >= zero {

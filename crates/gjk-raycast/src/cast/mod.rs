@@ -22,18 +22,19 @@ use crate::{CastMethod, Miss, Outcome, RayCastOptions, Status};
 use algorithm_3::{algorithm_3, touch_beside};
 use bracket::Bracket;
 use certain::at_certain_entry;
-pub(crate) use certain::{certain, certain_closely, is_plain, show};
+pub(crate) use certain::{certain, certain_closely, is_plain, last_number, show};
 pub(crate) use line::{CastRay, LocalRay, Part};
 use outline::bound_entry;
 use portal::portal;
 use start::SettleFn;
-pub(crate) use start::{RayBodies, settle_start};
+pub(crate) use start::{RayBodies, settle_ends};
 
 /// The searches that are quicker than Algorithm 3 alone, and the second measurement where they leave a doubt.
 #[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct Quicker<V: Vector> {
     cast: CastFn<V>,
     settle: SettleFn<V>,
+    settle_end: SettleFn<V>,
     touch_beside: fn(&mut Bracket<'_, V>, &Simplex<V>, V, V::Scalar, Option<V>) -> Option<RayContact<V>>,
 }
 
@@ -41,7 +42,8 @@ type CastFn<V> =
     fn(&mut dyn CastBody<Vector = V>, CastRay<V>, &RayCastOptions<V>, &mut Observer<'_, V>) -> ObstacleCast<V>;
 
 impl<V: Vector> Quicker<V> {
-    pub(crate) const TABLE: Self = Self { cast: cast_by::<V, true>, settle: start::settle, touch_beside };
+    pub(crate) const TABLE: Self =
+        Self { cast: cast_by::<V, true>, settle: start::settle, settle_end: start::settle_end, touch_beside };
 }
 
 in_static!(Quicker);
@@ -150,7 +152,8 @@ pub(crate) enum Stop<V> {
     Touches(V),
 }
 
-/// The result of [`cast`]; λ in units of the ray's direction.
+/// The result of [`cast`]; λ in units of the ray's direction. If only rounding decides whether the ray ends before a
+/// hit, the hit may be behind its end: see [`Outcome::until`].
 pub(crate) struct ObstacleCast<V: Vector> {
     pub(crate) outcome: Outcome<CastHit<V>, V>,
     pub(crate) lower: V::Scalar,
@@ -175,7 +178,7 @@ pub(crate) struct CastHit<V: Vector> {
 fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, Stop<V>>) -> ObstacleCast<V> {
     let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
     let (ray, max_lambda) = (bracket.ray, bracket.options.max_lambda);
-    let (mut outcome, (lower, upper), status) = match found {
+    let (outcome, (lower, upper), status) = match found {
         Ok(RayContact { mu, normal, witness }) => {
             let starts_inside = mu <= ray.start;
             let lambda = if starts_inside { zero } else { ray.lambda(mu).max(zero) };
@@ -196,9 +199,6 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
             (Outcome::Undecided, bracket.bounds(None), status)
         }
     };
-    let upper = outcome.until(max_lambda, upper, |hit| hit.lambda);
-    // Whether a hit has an upper bound may be measured again.
-    let status = status.of(&outcome, true);
     let (iterations, scale) = (bracket.iterations, bracket.scale);
     ObstacleCast { outcome, lower, upper, status, iterations, scale }
 }

@@ -1,11 +1,12 @@
-//! Casts that begin in contact, or within a few errors of it: whether the start is a hit.
+//! Casts that begin or end in contact, or within a few errors of it: whether the start is a hit, and whether there is
+//! one before the end.
 //!
 //! The cast's own bounds on its start have the errors of the largest number in it. A [second
 //! measurement](crate::separation::near_contact_of()) may prove the source apart from the target: then a ray that
 //! leaves or slides by misses, and one that approaches hits a little later.
 
 use convex_support::numerics::bound::{raised, roundings};
-use convex_support::numerics::twofold::dot_minus;
+use convex_support::numerics::twofold::{dot_minus, two_product};
 use convex_support::{Posed, Rounded, Scalar, Vector};
 use num_traits::Float;
 
@@ -17,6 +18,7 @@ use crate::shape::{Shape, WithoutLines};
 use crate::{Miss, Outcome, RayCastOptions, Status};
 
 /// The bodies of a ray, for a second measurement.
+#[derive(Clone, Copy)]
 pub(crate) struct RayBodies<'s, V: Vector> {
     /// The target, which is swept by a ball, its skin.
     pub(crate) a: Shape<'s, V>,
@@ -24,21 +26,33 @@ pub(crate) struct RayBodies<'s, V: Vector> {
     /// The shape, or the point at the source, whose motion is the ray.
     pub(crate) b: Shape<'s, V>,
     pub(crate) direction: V,
+    /// A bound on the error of the direction, as a part of its length.
+    pub(crate) direction_error: V::Scalar,
 }
 
-/// Decides about a hit that may be at the source, or about a search that stalled before it left the source.
+/// Decides about a hit that may be at the source, or about a search that stalled before it left the source; and about
+/// one that may be behind the end of the ray.
 #[inline(always)]
-pub(crate) fn settle_start<V: Vector>(
+pub(crate) fn settle_ends<V: Vector>(
     cast: &mut ObstacleCast<V>,
     bodies: RayBodies<'_, V>,
     options: &RayCastOptions<V>,
 ) {
+    let extra = |cast: &ObstacleCast<V>| options.extra.get().filter(|_| cast.iterations < options.max_iterations);
     if cast.is_to_be_settled()
-        && cast.iterations < options.max_iterations
-        && let Some(extra) = options.extra.get()
+        && let Some(extra) = extra(cast)
     {
         (extra.settle)(cast, bodies, options);
     }
+    let end = options.max_lambda;
+    if cast.lower <= end
+        && end < cast.upper
+        && cast.upper < Float::infinity()
+        && let Some(extra) = extra(cast)
+    {
+        (extra.settle_end)(cast, bodies, options);
+    }
+    cast.upper = cast.outcome.until(end, cast.upper, |hit| hit.lambda);
 }
 
 pub(super) type SettleFn<V> = fn(&mut ObstacleCast<V>, RayBodies<'_, V>, &RayCastOptions<V>);
@@ -47,7 +61,7 @@ pub(super) type SettleFn<V> = fn(&mut ObstacleCast<V>, RayBodies<'_, V>, &RayCas
 #[cold]
 #[inline(never)]
 pub(super) fn settle<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodies<'_, V>, options: &RayCastOptions<V>) {
-    let RayBodies { a, skin, b, direction } = bodies;
+    let RayBodies { a, skin, b, direction, .. } = bodies;
     let Ok(a) = Rounded::new(a, skin) else { return };
     let (zero, a) = (V::Scalar::ZERO, WithoutLines(&a));
     let max_iterations = options.max_iterations - cast.iterations;
@@ -78,8 +92,35 @@ pub(super) fn settle<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodies<'_
         }
     }
     cast.iterations += looks.iterations;
-    cast.upper = cast.outcome.until(options.max_lambda, cast.upper, |hit| hit.lambda);
-    cast.status = cast.status.of(&cast.outcome, true);
+}
+
+/// Decides by the measured gap of the bodies where the cast ends, if only rounding decides whether it ends before a
+/// hit: if they are apart there, and still close in, they were apart before.
+#[cold]
+#[inline(never)]
+pub(super) fn settle_end<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodies<'_, V>, options: &RayCastOptions<V>) {
+    let RayBodies { a, skin, b, direction, direction_error } = bodies;
+    let (zero, end) = (V::Scalar::ZERO, options.max_lambda);
+    let step = direction * end;
+    // What the products lose is known unless they are too small.
+    let least = V::Scalar::min_positive_value() / V::Scalar::EPSILON;
+    if (0..V::DIM).any(|i| step.get(i).abs() < least && direction.get(i) != zero && end != zero) {
+        return;
+    }
+    let lost = V::from_fn(|i| two_product(direction.get(i), end)[1]).norm() + direction_error * step.norm();
+    let (Ok(a), Ok(b)) = (Rounded::new(a, skin), Posed::translated(b, step)) else { return };
+    let max_iterations = options.max_iterations - cast.iterations;
+    let Some(near) = near_contact_of(&WithoutLines(&a), &WithoutLines(&b), max_iterations) else { return };
+    cast.iterations += near.iterations;
+    let closing = dot_minus((0..V::DIM).map(|i| (near.normal.get(i), direction.get(i))), zero);
+    if near.is_separated() && closing > zero && near.lower * near.frame.scale > lost + lost {
+        cast.miss(-near.normal);
+    } else if lost == zero && (near.overlaps_certainly || near.upper <= zero) {
+        cast.upper = end;
+        if let Outcome::Hit(hit) = &mut cast.outcome {
+            hit.lambda = hit.lambda.min(end);
+        }
+    }
 }
 
 /// The place of the source relative to the target's origin, the closest points of both, and the unit of these
