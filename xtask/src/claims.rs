@@ -3,7 +3,7 @@
 
 use checker::{Reader, Solid};
 use gjk_raycast::laws::{Numbers, PairPlanes, Planes, Report, Term};
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::engine;
 use crate::mesh::Meshes;
@@ -25,14 +25,15 @@ impl Planes for Exact {
 /// The starts are directions to begin with, and of planes to try.
 pub(crate) fn of(query: &Object, starts: &[Numbers], meshes: &Meshes) -> Option<Report> {
     let question = engine::question(query, meshes).ok()?;
-    let single = query.get("precision").and_then(Value::as_str) == Some("f32");
     let mesh = |path: &str| {
         let mesh = meshes.load(std::path::Path::new(path)).map_err(|why| why.message)?;
         Ok(mesh.points().iter().map(|point| point.to_array()).collect())
     };
-    let reader = Reader { single, mesh: &mesh };
+    let precision = json!({"precision": query.get("precision").unwrap_or(&json!("f64"))});
+    let reader = Reader::new(&precision, &mesh).ok()?;
     let solid = |name: &str| Solid::read(query.get(name)?, &reader).ok();
-    let point = || Solid::read(&json!({"type": "point", "at": [0.0, 0.0, 0.0]}), &reader).ok();
+    // Zero, in any dimension.
+    let point = || Solid::read(&json!({"type": "ball", "radius": 0.0}), &reader).ok();
     let (a, b) = if query.contains_key("target") { (solid("target")?, point()?) } else { (solid("a")?, solid("b")?) };
     let apart = Exact(b.minus(&a));
     let (a, b) = (Exact(a), Exact(b));
@@ -42,7 +43,7 @@ pub(crate) fn of(query: &Object, starts: &[Numbers], meshes: &Meshes) -> Option<
 /// What is wrong with the answer to a query that says what is expected of it.
 pub(crate) fn expected(query: &Object, meshes: &Meshes) -> Vec<String> {
     let Ok(question) = engine::question(query, meshes) else { return Vec::new() };
-    let answer = as_read(Line { id: Value::Null, line: 0, outcome: question.ask() });
+    let answer = as_read(Line { id: None, line: 0, outcome: question.ask() });
     let is_undecided = answer.contains_key("error");
     if is_undecided { Vec::new() } else { score::judge(query, &answer).wrong }
 }

@@ -108,7 +108,8 @@ mod tests {
         let turned = json!({"type": "posed", "rotation": [0.5, -0.25, 0.125, 1.0], "translation": [1.0, 2.0, -3.0],
                             "of": {"type": "hull", "of": parts}});
         let shape = json!({"type": "posed", "translation": [-1.0, 0.0, 7.0], "of": turned});
-        let reader = Reader { single: false, mesh: &|path| Err(path.to_owned()) };
+        let mesh = |path: &str| Err(path.to_owned());
+        let reader = Reader::new(&json!({}), &mesh).expect("no precision is said");
         let plain = reader.body(&shape).expect("a shape");
         let solid = Solid::read(&shape, &reader).expect("a shape");
         for normal in [[1.0, 0.0, 0.0], [-0.5, 0.25, 3.0], [0.125, -7.0, 1.0]] {

@@ -145,7 +145,7 @@ impl Cell {
             let is_narrow = query.ends_with("cast") || bound("upper") - bound("lower") <= NARROW;
             cell.certain += u64::from(answer["status"] == "converged" && is_narrow);
             cell.steps = cell.steps.max(answer["iterations"].as_u64().unwrap_or(0));
-            let (proof, said) = judge_line(1, &answered, &meshes);
+            let (proof, said) = judge_line(&answered, &meshes);
             if proof == Proof::Disproved {
                 cell.wrong.push(format!("disproved, by {said}: {line}"));
             }
