@@ -304,7 +304,8 @@ fn only_if_deeper<V: Vector>(
                 answer.outcome = Outcome::Hit(Impact { time: zero, point, normal: Some(normal) });
                 (answer.lower, answer.status) = (zero, Status::Converged);
             }
-            answer.upper = answer.upper.min(upper.max(answer.lower));
+            let upper = answer.upper.min(upper.max(answer.lower));
+            answer.upper = answer.outcome.until(options.max_time, upper, |hit| hit.time);
         }
         None => {
             let is_given_up = answer.iterations >= options.max_iterations;

@@ -266,8 +266,8 @@ pub struct Cast<H, V: Vector> {
     /// sense happens before.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// They have a point in common at this time, which is not after the end of the cast. It need not be the first, if
-    /// bodies without an inside have passed through one another in between. It is infinite if no such time is known: for
+    /// They have had a point in common by this time, which is not after the end of the cast. If they graze one another
+    /// within rounding, or have no inside, they may have parted again. It is infinite if no such time is known: for
     /// a miss, and for a hit that may be a miss, since the bodies graze each other, touch at the start, or first touch
     /// at the end, within rounding. Bodies that may [begin in contact](crate::StartInContact::IfDeeper) get deeper from
     /// then on at the latest, or have touched again.
@@ -348,7 +348,7 @@ pub struct RayExit<V: Vector> {
     /// Where the ray leaves, with the outward normal there; a miss if no point of the ray is in the target; or
     /// undecided.
     pub outcome: Outcome<RayHit<V>, V>,
-    /// The point of the ray at this parameter is in the target; minus infinity if no such point is known.
+    /// A point of the ray at this parameter, or after it, is in the target; minus infinity if no such point is known.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
     pub lower: V::Scalar,
     /// No point of the ray after this parameter is in the target; minus infinity for a miss.

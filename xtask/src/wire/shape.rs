@@ -188,19 +188,28 @@ impl EllipsoidSpec {
     ///
     /// Its axes are found in double precision and then rounded: that loses least where the matrix is given.
     pub fn build<V: Space>(&self, place: &str) -> Result<Ellipsoid<V>, Problem> {
-        self.wide::<V::Wide>().and_then(round).map_err(|why| Problem::invalid_shape(place, why))
+        self.made::<V::Wide>().and_then(round).map_err(|why| Problem::invalid_shape(place, why))
+    }
+
+    /// The ellipsoid as a body, made of the numbers of the query in their precision, so that it states the errors of its
+    /// axes.
+    fn solid<V: Space>(&self, place: &str) -> Result<Ellipsoid<V>, Problem> {
+        match &self.form {
+            EllipsoidForm::Matrix(_) => self.build(place),
+            EllipsoidForm::Axes { .. } => self.made().map_err(|why| Problem::invalid_shape(place, why)),
+        }
     }
 
     /// The ellipsoid at a pose, which is written at `pose_place`.
     pub fn build_posed<V: Space>(&self, place: &str, pose: &Pose, pose_place: &str) -> Result<Ellipsoid<V>, Problem> {
-        let body = self.wide::<V::Wide>().map_err(|why| Problem::invalid_shape(place, why))?;
+        let body = self.made::<V::Wide>().map_err(|why| Problem::invalid_shape(place, why))?;
         body.posed(rotation_of::<V::Wide>(pose.rotation.as_ref()), vector(&pose.translation))
             .and_then(round)
             .map_err(|why| Problem::invalid_shape(pose_place, why))
     }
 
-    /// The ellipsoid in double precision.
-    fn wide<W: Space>(&self) -> Result<Ellipsoid<W>, InvalidShape> {
+    /// The ellipsoid in a precision.
+    fn made<W: Space>(&self) -> Result<Ellipsoid<W>, InvalidShape> {
         match &self.form {
             EllipsoidForm::Matrix(matrix) => Ellipsoid::from_matrix(vector(&self.center), matrix_of_rows(matrix)),
             EllipsoidForm::Axes { semi_axes, rotation } => {
@@ -365,7 +374,7 @@ impl Shape {
                 Box::new(Capsule::<V>::new(s(*half_height), s(*radius)).map_err(invalid)?)
             }
             Self::Upright { kind, half_height, radius } => V::upright(*kind, *half_height, *radius).map_err(invalid)?,
-            Self::Ellipsoid(spec) => Box::new(spec.build::<V>(place)?),
+            Self::Ellipsoid(spec) => Box::new(spec.solid::<V>(place)?),
             Self::Polytope(points) => Box::new(Polytope::<V>::new(points.iter().map(vector)).map_err(invalid)?),
             Self::Mesh(path) => {
                 let mesh = meshes.load(path).map_err(|why| why.at(&format!("{place}.path")))?;

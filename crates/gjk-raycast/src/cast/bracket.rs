@@ -264,7 +264,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
             let end = line.at(self.ray.mu(self.options.max_lambda));
             Err(Stop::Miss(end.unit().unwrap_or(-line.direction)))
         } else if self.chord.0 < Scalar::ZERO {
-            Err(Stop::Miss(line.foot.unit().unwrap_or(line.direction)))
+            // Its part along the line, which rounding leaves, would count far from here.
+            Err(Stop::Miss(line.across(line.foot).unit().unwrap_or(line.direction)))
         } else {
             Ok(())
         }

@@ -230,9 +230,10 @@ impl Casts<'_> {
         let first = told.iter().min_by(|x, y| x.latest().total_cmp(&y.latest()));
         if let Some(one) = first.filter(|one| one.latest() < f64::INFINITY) {
             // Whoever is before a plane at both ends is before it at all times between.
+            let from = if one.upper <= one.end { one.lower } else { 0.0 };
             for &n in &normals {
                 let at_end = beyond(n, one.latest())[0];
-                let is_missed = at_end > self.target && (one.upper <= one.end || beyond(n, 0.0)[0] > self.target);
+                let is_missed = at_end > self.target && beyond(n, from)[0] > self.target;
                 report.claim((Law::Bound, query), !is_missed, || {
                     format!(
                         "{}, a plane across {n:?} separates by {at_end:e} at {:e}, the upper bound or the end: {}",

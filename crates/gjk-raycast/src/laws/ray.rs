@@ -139,9 +139,10 @@ fn leaves<V: Vector>(
             }
             if lower.is_finite() {
                 for &n in casts.normals.iter().chain(&hit.normal.map(numbers)) {
-                    let apart = beyond(n, lower)[0];
+                    // Before a plane at both ends is before it at all places between.
+                    let apart = beyond(n, lower)[0].min(beyond(n, upper)[0]);
                     report.claim((Law::Bound, query), apart <= 0.0, || {
-                        format!("{how}, at the lower bound a plane across {n:?} separates by {apart:e}: {exit:?}")
+                        format!("{how}, within the bounds a plane across {n:?} separates by {apart:e}: {exit:?}")
                     });
                 }
             }
