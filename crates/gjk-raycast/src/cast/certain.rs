@@ -192,6 +192,7 @@ impl<V: Vector> ObstacleCast<V> {
             let spot = (ray.source - origin) + ray.direction * lambda;
             CastHit { lambda, normal, spot, witness: body.witness(spot - normal.unwrap_or_default() * radius) }
         });
-        Self { outcome, lower, upper, status, iterations, scale: Scalar::ONE }
+        // What a shape knows for certain is as narrow as can be.
+        Self { outcome, lower, upper, status, iterations, scale: Scalar::ONE, narrow: V::Scalar::max_value() }
     }
 }
