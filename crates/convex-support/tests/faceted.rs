@@ -183,3 +183,49 @@ fn rays_at_facets_are_certain_without_a_search() {
     assert!(earliest <= 3.0 && 3.0 <= latest && latest - earliest < 1e-12, "{earliest} {latest}");
     assert_eq!(bounds_of(&Faceted::hull_of([DVec3::ZERO, DVec3::X, DVec3::Y]).unwrap(), source), None);
 }
+
+/// The facets of points that are in a plane or on a line to rounding bounded nothing aside of them: three of four lines
+/// that passed a turned square crossed it, and where no facet had a plane, asking for a certain crossing panicked.
+fn flat_and_thin<V: Vector>() {
+    let mut state = 7_u64;
+    let mut number = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    for round in 0..400 {
+        let turn = DQuat::from_xyzw(number(), number(), number(), number()).normalize();
+        let thick = [0.0, 1e-12, 1e-9, 1e-5][round % 4];
+        let wide = [1.0, 0.0, 1e-12, 1e-4][round / 4 % 4];
+        let corners = (0..3 + round % 7).map(|_| turn * DVec3::new(number(), number() * wide, number() * thick));
+        let corners: Vec<V> = corners.map(|p| V::from_fn(|i| V::Scalar::from_f64(p[i]))).collect();
+        let hull = Faceted::hull_of(corners.iter().copied()).unwrap();
+        let middle = corners[0];
+        let size = corners.iter().map(|&p| (p - middle).norm().as_f64()).fold(0.0, f64::max);
+        for _ in 0..8 {
+            let vector = |p: DVec3| V::from_fn(|i| V::Scalar::from_f64(p[i]));
+            let aside = turn * DVec3::new(number(), number(), thick * number()).normalize() * (3.0 * size);
+            let to = vector(DVec3::new(number(), number(), number()));
+            let source = middle + vector(aside) - to;
+            let _ = hull.certain_crossing(LineQuery::new(source, to));
+            if let Some(crossing) = crossing_of(&hull, source, to) {
+                for at in [crossing.entry, crossing.exit] {
+                    let off = (source + to * at - middle).norm().as_f64();
+                    assert!(off <= size * (1.0 + 1e4 * V::Scalar::EPSILON.as_f64()), "{off} of {size}: {corners:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn half_spaces_bound_what_is_flat_or_thin() {
+    flat_and_thin::<DVec3>();
+    flat_and_thin::<Vec3A>();
+    flat_and_thin::<DVec2>();
+    let (near_a_line, other) =
+        (DVec3::new(1.0, 0.0, 0.25320836558803606), DVec3::new(0.7500000000000002, 0.0, 0.1899062741910271));
+    let hull = Faceted::hull_of([near_a_line, DVec3::ZERO, other]).unwrap();
+    let reaches = |v: DVec3| hull.half_spaces().all(|(n, reach)| n.dot(v) <= reach + 1e-15);
+    assert!(reaches(near_a_line) && reaches(other) && !reaches(near_a_line * 1.001) && !reaches(DVec3::Y * 1e-3));
+    assert_eq!(hull.certain_crossing(LineQuery::new(DVec3::Y, DVec3::NEG_Y)), None);
+}

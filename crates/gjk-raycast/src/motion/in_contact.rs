@@ -38,7 +38,7 @@ use num_traits::Float as _;
 
 use super::instant::{Approach as _, Instant};
 use super::moving_pair::MovingPair;
-use super::placed::{Corners, Placed};
+use super::placed::{BodyFrameCorners, Placed};
 use super::rough_look::times;
 use super::trajectory::TurningPlane;
 use crate::SignedDistanceOptions;
@@ -114,7 +114,7 @@ impl<V: Vector> MovingPair<'_, V> {
     }
 
     /// The corners of the face of the difference that is nearest to zero, if they are as many as there are dimensions.
-    fn closest_corners(&self, placed: &Placed<'_, V>, axis: V) -> Option<Corners<V>> {
+    fn closest_corners(&self, placed: &Placed<'_, V>, axis: V) -> Option<BodyFrameCorners<V>> {
         let mut pair = placed.pair();
         let size = pair.size(placed.offset);
         // A body with a radius has an inside.
@@ -127,7 +127,7 @@ impl<V: Vector> MovingPair<'_, V> {
         let _ = gjk(&mut state, &mut pair, frame, options, None, &mut Observer::none());
         self.count(state.iterations);
         state.ensure_measured();
-        let mut corners = Corners::none();
+        let mut corners = BodyFrameCorners::none();
         corners.keep(state.simplex.weighted().map(|(_, corner)| times(corner, frame.scale)), placed);
         (state.simplex.points().len() == V::DIM).then_some(corners)
     }

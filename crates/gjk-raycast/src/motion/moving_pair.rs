@@ -10,7 +10,7 @@ use num_traits::Float;
 use super::first_contact::{MotionEnd, Search};
 use super::instant::{Approach, Instant, Limits};
 use super::moving_body::{Block, MovingBody};
-use super::placed::{Corners, Placed};
+use super::placed::{BodyFrameCorners, Placed};
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::body::{CastBody, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::distance::distance_of_any;
@@ -39,7 +39,7 @@ pub(super) struct MovingPair<'s, V: Vector> {
     /// The edges that span the facet of the last look, if zero's foot was within it.
     pub(super) facet: Cell<Option<[usize; 2]>>,
     /// The corners of the faces that were closest at the last look.
-    pub(super) closest: RefCell<Corners<V>>,
+    pub(super) closest: RefCell<BodyFrameCorners<V>>,
     /// The support points computed of each shape.
     iterations: Cell<usize>,
 }
@@ -95,7 +95,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         let blocks = || Some([Block::of(a.shape, &a.core)?, Block::of(b.shape, &b.core)?]);
         let boxes = if knows_points || extra.get().is_none() { None } else { blocks() };
         let facet = Cell::new(None);
-        let (closest, iterations) = (RefCell::new(Corners::none()), Cell::new(0));
+        let (closest, iterations) = (RefCell::new(BodyFrameCorners::none()), Cell::new(0));
         let hints = Cell::new([Hint::new(), Hint::new()]);
         Self { shapes, extra, hints, a, b, knows_points, boxes, facet, closest, iterations }
     }

@@ -169,7 +169,7 @@ impl<V: Vector> Shapes for Placed<'_, V> {
 
 /// Corners of both cores, each relative to its body's origin and turned back to time 0.
 #[derive(Clone, Copy)]
-pub(super) struct Corners<V> {
+pub(super) struct BodyFrameCorners<V> {
     pairs: [PointPair<V>; MAX_POINTS],
     len: usize,
 }
@@ -185,7 +185,7 @@ pub(super) struct CornerFace<V: Vector> {
     pub(super) v: V,
 }
 
-impl<V: Vector> Corners<V> {
+impl<V: Vector> BodyFrameCorners<V> {
     /// No corners.
     pub(super) fn none() -> Self {
         Self { pairs: [PointPair::default(); MAX_POINTS], len: 0 }

@@ -65,7 +65,7 @@ fn largest(points: &[[f64; 3]], value: impl Fn(u32) -> f64) -> Option<u32> {
 }
 
 /// The two points at the ends of the longest edge of the bounding box; `None` if all points coincide.
-fn farthest_along_an_axis(points: &[[f64; 3]]) -> Option<[u32; 2]> {
+pub(super) fn farthest_along_an_axis(points: &[[f64; 3]]) -> Option<[u32; 2]> {
     let mut widest = (0.0, None);
     for axis in 0..3 {
         let (mut low, mut high) = (0, 0);

@@ -8,7 +8,7 @@ use num_traits::Float as _;
 use glam::DVec3;
 
 use super::Polytope;
-use super::convex_hull::ConvexHull;
+use super::convex_hull::{ConvexHull, convex_hull, farthest_along_an_axis};
 use super::hull::FromPoints;
 use super::lanes::{coordinate, side_by_side};
 use super::planes::{Planes, facet};
@@ -66,17 +66,17 @@ impl<V: Vector> Faceted<V> {
     fn of(FromPoints { polytope, seen, unit, hull }: FromPoints<V>) -> Self {
         // Without a hull, only the bounding box is known.
         let hull = hull.unwrap_or(ConvexHull::Point(0));
-        let normals: Vec<V> = normals(&hull, &seen, V::DIM)
-            .into_iter()
-            .filter_map(|n| V::from_fn(|i| V::Scalar::from_f64(n[i])).unit())
-            .collect();
+        let unit_normal = |n: DVec3| V::from_fn(|i| V::Scalar::from_f64(n[i])).unit();
+        let mut normals: Vec<V> = normals(&hull, &seen, V::DIM).into_iter().filter_map(unit_normal).collect();
+        let corners = corners(&hull, V::DIM);
+        // A facet without a normal has no plane.
+        let has_all_facets = !corners.is_empty() && corners.len() == normals.len();
+        normals.extend(silhouette(&hull, &seen, V::DIM).into_iter().filter_map(unit_normal));
         let (distinct, plane_of) = distinct(&normals);
         let reaching = |n: V| (n, n.dot(polytope.core_support(n, &mut Hint::new())));
         let facets: Vec<(V, V::Scalar)> = distinct.into_iter().map(reaching).collect();
         let corner = |i: u32| V::from_fn(|axis| V::Scalar::from_f64(seen[i as usize][axis])) * unit;
-        let corners = corners(&hull, V::DIM);
-        // A facet without a normal has no plane.
-        let uncut = if corners.len() == normals.len() {
+        let uncut = if has_all_facets {
             let facets_of = plane_of.iter().map(|&plane| facets[plane]);
             uncut(&polytope, &facets, corners.into_iter().map(|corners| corners.map(corner)).zip(facets_of))
         } else {
@@ -151,7 +151,7 @@ fn corners(hull: &ConvexHull, dimension: usize) -> Vec<[u32; 3]> {
 const FARTHEST_BEHIND: f64 = 64.0;
 
 /// Every point behind all planes by more than this is in the hull. All facets of the hull are given, each with its
-/// corners and its plane.
+/// corners and its plane; more planes only make fewer points be behind all.
 ///
 /// Let no corner be farther behind the plane of its facet than that, and let a point `o` of the hull, here the mean of
 /// the vertices, be farther behind all planes. A line from `o` to a point `x` outside leaves the hull through some
@@ -219,6 +219,44 @@ fn normals(hull: &ConvexHull, points: &[[f64; 3]], dimension: usize) -> Vec<DVec
             })
             .collect(),
     }
+}
+
+/// A hull is thin if its width is less than its length by this factor.
+const THIN: f64 = 64.0;
+
+/// Outward normals, of any length, of half-spaces that bound a thin hull where its facets do not.
+///
+/// The facets of a needle or a plate may all be nearly along it, so that the places where their planes meet are known
+/// to rounding times its length by its width: points in a plane, once turned, are the corners of a plate as thick as
+/// rounding, whose facets have one plane on either side. So a needle is also bounded by planes across its ends and
+/// about it, and a plate by those through the sides of its outline.
+fn silhouette(hull: &ConvexHull, points: &[[f64; 3]], dimension: usize) -> Vec<DVec3> {
+    let is_solid = dimension == 3 && matches!(hull, ConvexHull::Polyhedron(_));
+    let ends = farthest_along_an_axis(points).filter(|_| is_solid || matches!(hull, ConvexHull::Polygon(_)));
+    let Some([a, b]) = ends else { return Vec::new() };
+    let first = DVec3::from(points[a as usize]);
+    let span = DVec3::from(points[b as usize]) - first;
+    let along = span.normalize();
+    let seen = || points.iter().map(|&p| DVec3::from(p) - first);
+    let farther = |a: DVec3, b: DVec3| if b.length_squared() > a.length_squared() { b } else { a };
+    let farthest = seen().map(|p| p.reject_from_normalized(along)).fold(DVec3::ZERO, farther);
+    let width = farthest.length();
+    let mut normals = Vec::new();
+    if width * THIN < span.length() {
+        normals = self::normals(&ConvexHull::Segment([a, b]), points, dimension);
+    }
+    // Of points on a line to rounding, the planes about it are all that is known.
+    let Some(across) = farthest.reject_from_normalized(along).try_normalize().filter(|_| is_solid) else {
+        return normals;
+    };
+    let up = along.cross(across);
+    let thickness = seen().map(|p| up.dot(p).abs()).fold(0.0, f64::max);
+    if thickness * THIN < width {
+        let outline: Vec<[f64; 3]> = seen().map(|p| [along.dot(p), across.dot(p), 0.0]).collect();
+        let sides = convex_hull(&outline).map_or_else(Vec::new, |hull| self::normals(&hull, &outline, 2));
+        normals.extend(sides.into_iter().map(|n| along * n.x + across * n.y));
+    }
+    normals
 }
 
 /// The polytope's answers, except for the crossing by a line.
