@@ -1,7 +1,8 @@
 //! `cargo xtask fuzz`: damaged query lines, hulls of small integers against an exact oracle, and what answers say of
 //! themselves, for a bounded time.
 //!
-//! The time is shared evenly. The same seed draws the same sequence; how far it comes depends on the machine.
+//! The time is shared evenly. The same seed draws the same sequence; how far it comes depends on the machine, unless a
+//! number of cases is given.
 
 mod claims;
 mod integers;
@@ -26,6 +27,9 @@ pub struct Scope {
     /// How long it takes.
     #[arg(long, value_name = "N", default_value_t = 10)]
     seconds: u64,
+    /// So many cases of each kind instead of as many as there is time for: the same ones on every machine.
+    #[arg(long, value_name = "N", conflicts_with = "seconds")]
+    cases: Option<u64>,
     /// Another seed draws other cases.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -83,11 +87,11 @@ fn fuzz(scope: &Scope, output: &mut impl Write) -> io::Result<usize> {
         let (what, tried, failed) = match kind {
             Kind::Lines => {
                 let suite = lines::Suite::read()?;
-                let (tried, failed) = until(end, scope.seed, |rng| suite.case(rng));
+                let (tried, failed) = tried(scope, end, |rng| suite.case(rng));
                 ("damaged lines", tried, failed)
             }
             Kind::Integers => {
-                let (tried, failed) = until(end, scope.seed, integers::case);
+                let (tried, failed) = tried(scope, end, integers::case);
                 ("hulls of integers", tried, failed)
             }
             Kind::Claims => {
@@ -110,7 +114,7 @@ fn claimed(scope: &Scope, end: Instant, output: &mut impl Write) -> io::Result<(
         query: scope.query.clone(),
     };
     let all = Mutex::new(claims::Tallies::new());
-    let found = until(end, scope.seed, |rng| {
+    let found = tried(scope, end, |rng| {
         let mut tallies = claims::Tallies::new();
         let verdict = claims::case(&choice, rng, &mut tallies);
         let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
@@ -167,23 +171,24 @@ fn replay(file: &PathBuf, output: &mut impl Write) -> io::Result<usize> {
 /// One case: nothing, or what went wrong.
 type Verdict = Result<(), String>;
 
-/// Tries cases until the time is up, on all cores; each core draws its own. How many were tried, and how many failed.
-fn until(end: Instant, seed: u64, case: impl Fn(&mut Rng) -> Verdict + Sync) -> (u64, usize) {
+/// Tries cases on all cores. How many were tried, and how many failed.
+fn tried(scope: &Scope, end: Instant, case: impl Fn(&mut Rng) -> Verdict + Sync) -> (u64, usize) {
     let teller = Teller::default();
+    let lane = |lane: u64| Rng::new(scope.seed.wrapping_mul(0x9E37_79B9).wrapping_add(lane));
+    let fails = |rng: &mut Rng| case(rng).inspect_err(|failure| teller.tell(failure)).is_err();
+    if let Some(cases) = scope.cases {
+        return (cases, (0..cases).into_par_iter().filter(|&i| fails(&mut lane(i))).count());
+    }
+    // Until the time is up; each core draws its own.
+    let until_end = |i: u64| {
+        let mut rng = lane(i);
+        let (mut tried, mut failed) = (0, 0);
+        while Instant::now() < end {
+            tried += 1;
+            failed += usize::from(fails(&mut rng));
+        }
+        (tried, failed)
+    };
     let lanes = 0..rayon::current_num_threads() as u64;
-    lanes
-        .into_par_iter()
-        .map(|lane| {
-            let mut rng = Rng::new(seed.wrapping_mul(0x9E37_79B9).wrapping_add(lane));
-            let (mut tried, mut failed) = (0, 0);
-            while Instant::now() < end {
-                tried += 1;
-                if let Err(failure) = case(&mut rng) {
-                    failed += 1;
-                    teller.tell(&failure);
-                }
-            }
-            (tried, failed)
-        })
-        .reduce(|| (0, 0), |(tried, failed), (more, other)| (tried + more, failed + other))
+    lanes.into_par_iter().map(until_end).reduce(|| (0, 0), |(tried, failed), (more, other)| (tried + more, failed + other))
 }
