@@ -193,8 +193,7 @@ fn answer<V: Vector>(
         Outcome::Miss(miss) => Outcome::Miss(Miss { axis: -miss.axis }),
         Outcome::Undecided => Outcome::Undecided,
     };
-    let &ObstacleCast { lower, upper, iterations, .. } = cast;
-    let status = cast.status_along(motion.velocity_b - motion.velocity_a);
+    let &ObstacleCast { lower, upper, status, iterations, .. } = cast;
     let mut answer = LinearCast { outcome, lower, upper, status, iterations };
     let mut start = StartingPair { a, b, target, slack: zero };
     // Where only deeper motions count, what is known of the start is looked for below.

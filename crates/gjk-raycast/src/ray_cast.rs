@@ -183,7 +183,7 @@ fn late<V: Vector>(
                 if early.upper <= zero && behind.upper <= zero { begin } else { begin + slack + behind.upper + error };
             let outcome = Outcome::Hit(RayHit { lambda: begin, point: ray.at(begin), normal: None });
             let iterations = early.iterations + behind.iterations;
-            RayCast { outcome, lower: begin, upper, status: behind.status, iterations }
+            RayCast { outcome, lower: begin, upper, status: Status::Converged, iterations }
         }
         _ => {
             let (mut answer, start) = (early, begin - slack);
@@ -203,10 +203,10 @@ fn late<V: Vector>(
 
 #[inline(always)]
 fn answer<V: Vector>(cast: ObstacleCast<V>, ray: Ray<V>) -> RayCast<V> {
-    let status = cast.status_along(ray.direction);
     let outcome = cast.outcome.map(|CastHit { lambda, normal, .. }| {
         let point = if lambda > Scalar::ZERO { ray.at(lambda) } else { ray.source };
         RayHit { lambda, point, normal }
     });
+    let status = cast.status.of(&outcome, cast.upper < V::Scalar::infinity());
     RayCast { outcome, lower: cast.lower, upper: cast.upper, status, iterations: cast.iterations }
 }

@@ -56,8 +56,7 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
                 let outcome = Outcome::Hit(RayHit { lambda: end, point: ray.at(end), normal: None });
                 // It is in the shape from where it enters for certain to where it leaves at the earliest.
                 let lower = if entry.is_certain() { end.min(exit.lower) } else { -infinity };
-                let status = if lower < end { exit.status } else { Status::Converged };
-                RayExit { outcome, lower, upper: end, status, ..exit }.on_ray(begin)
+                RayExit { outcome, lower, upper: end, status: Status::Converged, ..exit }.on_ray(begin)
             }
             Outcome::Miss(miss) => RayExit { outcome: Outcome::Miss(miss), status: entry.status, ..exit }.missed(),
             Outcome::Undecided => {
@@ -85,7 +84,6 @@ compiled_once! {
         let forward = LocalRay::new(ray, origin, cast.scale);
         let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
         let (mut lower, mut upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);
-        let status = cast.status_along(ray.direction);
         let mut outcome = cast.outcome.map(|CastHit { lambda, normal, .. }| {
             let lambda = reverse(lambda);
             RayHit { lambda, point: ray.at(lambda), normal }
@@ -95,7 +93,7 @@ compiled_once! {
             // Numbers are out of range.
             (lower, upper) = (-infinity, infinity);
         }
-        let status = status.of(&outcome, lower > -infinity);
+        let status = cast.status.of(&outcome, lower > -infinity);
         let answer = RayExit { outcome, lower, upper, status, iterations: cast.iterations };
         if outcome.is_miss() { answer.missed() } else { answer }
     }

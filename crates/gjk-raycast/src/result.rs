@@ -20,10 +20,9 @@ pub enum Status {
 }
 
 impl Status {
-    /// The status of an outcome: a search that converged to a hit without an upper bound, or with one that is not
-    /// narrow, has stalled.
-    pub(crate) fn of<H, V>(self, outcome: &Outcome<H, V>, is_narrow: bool) -> Self {
-        if !outcome.is_certain(is_narrow) && self == Self::Converged { Self::Stalled } else { self }
+    /// The status of an outcome: a search that converged to a hit without an upper bound has stalled.
+    pub(crate) fn of<H, V>(self, outcome: &Outcome<H, V>, is_bounded: bool) -> Self {
+        if !outcome.is_certain(is_bounded) && self == Self::Converged { Self::Stalled } else { self }
     }
 }
 

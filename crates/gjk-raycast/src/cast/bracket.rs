@@ -247,14 +247,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
         self.noise.max(self.options.tolerance).min(Scalar::from_f64(LARGEST_TOLERANCE))
     }
 
-    /// How deep behind the last plane the upper bound of a converged bracket may be: by 64ε of the size and of the way,
-    /// four times the stated errors, and the tolerance.
-    pub(super) fn narrow(&self) -> V::Scalar {
-        let number = V::Scalar::from_f64;
-        let way = (self.low() - self.ray.start).max(Scalar::ZERO);
-        self.noise + self.noise + self.error * number(4.0) + way * V::Scalar::EPSILON * number(64.0) + self.tolerance()
-    }
-
     /// Where on the line the ray ends, or leaves the ball about the body.
     pub(super) fn end(&self) -> V::Scalar {
         self.chord.1.min(self.ray.mu(self.options.max_lambda))

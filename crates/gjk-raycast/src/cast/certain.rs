@@ -192,7 +192,6 @@ impl<V: Vector> ObstacleCast<V> {
             let spot = (ray.source - origin) + ray.direction * lambda;
             CastHit { lambda, normal, spot, witness: body.witness(spot - normal.unwrap_or_default() * radius) }
         });
-        // What a shape knows for certain is as narrow as can be.
-        Self { outcome, lower, upper, status, iterations, scale: Scalar::ONE, narrow: V::Scalar::max_value() }
+        Self { outcome, lower, upper, status, iterations, scale: Scalar::ONE }
     }
 }

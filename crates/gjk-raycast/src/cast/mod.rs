@@ -162,22 +162,6 @@ pub(crate) struct ObstacleCast<V: Vector> {
     pub(crate) iterations: usize,
     /// The unit of the hit spot and of the witness.
     pub(crate) scale: V::Scalar,
-    /// How deep the ray may be in the body at the upper bound of a converged hit.
-    narrow: V::Scalar,
-}
-
-impl<V: Vector> ObstacleCast<V> {
-    /// The status by the width of the bracket. Between its bounds the ray gets no deeper behind the plane of the hit than
-    /// the width times the cosine, and so no deeper into the body; without a plane, than the width.
-    #[inline(always)]
-    pub(crate) fn status_along(&self, direction: V) -> Status {
-        let slope = match &self.outcome {
-            Outcome::Hit(CastHit { normal: Some(n), .. }) => n.dot(direction).abs(),
-            _ => direction.norm(),
-        };
-        // NaN, of a bound that is infinite, is not narrow.
-        self.status.of(&self.outcome, (self.upper - self.lower) * slope <= self.narrow)
-    }
 }
 
 /// Where the ray enters the body.
@@ -215,6 +199,6 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
             (Outcome::Undecided, bracket.bounds(None), status)
         }
     };
-    let (iterations, scale, narrow) = (bracket.iterations, bracket.scale, bracket.narrow() * bracket.scale);
-    ObstacleCast { outcome, lower, upper, status, iterations, scale, narrow }
+    let (iterations, scale) = (bracket.iterations, bracket.scale);
+    ObstacleCast { outcome, lower, upper, status, iterations, scale }
 }

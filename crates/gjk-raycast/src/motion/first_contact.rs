@@ -324,21 +324,6 @@ impl<'p, V: Vector> Search<'p, V> {
         });
     }
 
-    /// Whether the bodies are no deeper at the upper bound than a converged answer may leave open: by their speed, or
-    /// else by the plane of the last time at which they are apart.
-    fn is_narrow(&self) -> bool {
-        let (number, Instant { time, normal, error, closing, .. }) = (V::Scalar::from_f64, self.near);
-        let size = self.bodies.size();
-        let rounded = (size * V::Scalar::EPSILON * number(64.0)).max(error * number(8.0));
-        let narrow = rounded + size * self.options.tolerance;
-        let most = self.bodies.acceleration_along(TurningPlane { from: normal, to: normal }, [time, self.upper]);
-        let (level, width) = (|time| self.bodies.level(time, normal).0, self.upper - time);
-        // NaN is not narrow.
-        width <= V::Scalar::ZERO
-            || width * (closing + most * width * number(0.5)) <= narrow
-            || level(time) - level(self.upper) <= narrow
-    }
-
     fn answer(&self, end: MotionEnd<V>) -> MotionCast<V> {
         let Instant { time: near, point, normal, .. } = self.near;
         let mut lower = self.lower();
@@ -361,8 +346,8 @@ impl<'p, V: Vector> Search<'p, V> {
             }
         };
         let upper = outcome.until(self.options.max_time, self.upper, |hit| hit.time);
-        let status = status.of(&outcome, upper < V::Scalar::infinity() && self.is_narrow());
         let iterations = self.bodies.iterations();
+        let status = status.of(&outcome, upper < V::Scalar::infinity());
         MotionCast { outcome, lower, upper, status, iterations }
     }
 }
