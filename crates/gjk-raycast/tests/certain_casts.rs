@@ -45,7 +45,7 @@ fn casts<V: Vector>(target: &Shape<V>, center: V, ray: Ray<V>) -> Vec<(&'static 
     let motion = Motion { velocity_a: V::ZERO, velocity_b: ray.direction };
     let [at_rest, along] = motion.translations();
     fn seen<H, V: Vector>(cast: Cast<H, V>) -> (bool, Option<bool>) {
-        assert!(!cast.lower.as_f64().is_nan() && !cast.upper.as_f64().is_nan());
+        assert!(!cast.lower.as_f64().is_nan() && !cast.upper.as_f64().is_nan(), "a bound is a number");
         (cast.is_certain(), if cast.outcome.is_undecided() { None } else { Some(cast.outcome.is_hit()) })
     }
     let rays = RayCastOptions::new();

@@ -6,8 +6,8 @@ use crate::common::behind_pointers::distance;
 use crate::common::{at, cuboid, turned};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec3A};
 use convex_support::{
-    Affine, Ball, Capsule, Cone, Cylinder, Ellipsoid, Matrix, Point, Polytope, Posed, Rounded, Segment, SupportMap,
-    Triangle, Vector, closest_point, glam,
+    Affine, Ball, Capsule, Cone, Cylinder, Ellipsoid, Matrix, Point, Polytope, Posed, Rotation, Rounded, Scalar,
+    Segment, SupportMap, Triangle, Vector, closest_point, glam,
 };
 use gjk_raycast::{
     Contact, Ray, RayCastOptions, RigidMotion, SignedDistanceOptions, contact, contact_after, ray_cast, signed_distance,
@@ -505,4 +505,97 @@ fn points_between_corners_of_thin_triangles_are_of_the_shapes() {
         }
     }
     assert!(seen > 300, "{seen}");
+}
+
+/// How far the points of a manifold are outside the bodies, which are given in double precision, is within their errors
+/// and the rounding of their coordinates.
+fn are_of_their_bodies<V, A, B>(found: &Contact<V>, a: &A, b: &B, size: f64)
+where
+    V: Vector,
+    A: SupportMap<Vector = DVec3>,
+    B: SupportMap<Vector = DVec3>,
+{
+    let outside = |shape: &dyn SupportMap<Vector = DVec3>, at: V| {
+        let point = Point::new(DVec3::from_fn(|i| at.get(i).as_f64())).expect("finite");
+        signed_distance(&point, &shape, SignedDistanceOptions::default()).lower
+    };
+    for p in found.points() {
+        let allowed = p.error.as_f64() + 64.0 * V::Scalar::EPSILON.as_f64() * size;
+        let off = [outside(a, p.point_a), outside(b, p.point_b)];
+        assert!(off.iter().all(|&off| off <= allowed), "{off:?}, not {allowed}: {found:?}");
+    }
+}
+
+/// The affine image of a shape, turned and moved.
+fn mapped<V: Vector, S: SupportMap<Vector = V>>(
+    shape: S,
+    columns: [[f64; 3]; 3],
+    turn: [f64; 4],
+    place: [f64; 3],
+) -> Posed<Affine<S>> {
+    let number = V::Scalar::from_f64;
+    let vector = |c: [f64; 3]| V::from_fn(|i| number(c[i]));
+    let matrix = V::Matrix::from_cols_fn(|j| vector(columns[j]));
+    let affine = Affine::new(shape, matrix, V::ZERO).expect("finite");
+    Posed::new(affine, V::Rotation::from_xyzw(turn.map(number)), vector(place)).expect("a pose")
+}
+
+/// A disc and a needle by flattened balls, in single precision: a point was outside by 3e-4 with an error of 2e-6.
+fn flattened_balls<V: Vector>() -> [Posed<Affine<Ball<V>>>; 2] {
+    let ball = |radius: f64| Ball::new(V::Scalar::from_f64(radius)).expect(VALID);
+    let columns = [
+        [-0.4481360912322998, -0.736619234085083, 0.7711043357849121],
+        [0.1944514513015747, 0.006552918814122677, -0.06548526883125305],
+        [0.40872639417648315, -0.903304398059845, 0.3462912142276764],
+    ];
+    let half = f64::from(std::f32::consts::FRAC_1_SQRT_2);
+    let place = [0.051184479147195816, -0.08288610726594925, 0.09244164824485779];
+    let plate = [[1.0, 0.0, 0.0], [0.0, 0.0033201680053025484, 0.0], [0.0, 0.0, 1.0]];
+    let turn = [-0.4441549479961395, 0.7041440606117249, -0.14531470835208893, 0.8565601706504822];
+    [
+        mapped(ball(0.0625), columns, [half, 0.0, 0.0, half], place),
+        mapped(ball(0.10646600276231766), plate, turn, [0.1397935301065445, -0.1200353279709816, -0.00615311274304986]),
+    ]
+}
+
+/// Two flattened capsules: a point was outside by 2e-7 with an error of 8e-13.
+fn flattened_capsules<V: Vector>() -> [Posed<Affine<Capsule<V>>>; 2] {
+    let number = V::Scalar::from_f64;
+    let capsule = |half: f64, radius: f64| Capsule::new(number(half), number(radius)).expect(VALID);
+    let plate = [[0.8825273433088086, 0.0, 0.0], [0.0, 0.9928904900944523, 0.0], [0.0, 0.0, 0.004705018122926024]];
+    let columns = [
+        [0.11246991570419479, 0.1491867485122364, -0.010520072956921376],
+        [0.0958154352835364, -0.12223651441485191, 3.134978509749434e-5],
+        [-0.000907700003314161, -0.0004725572541004796, -1.1745597905590182e-6],
+    ];
+    let turn = [4.660729571451728e-6, -2.153829209215851e-6, -3.956987976309224e-6, 1.0];
+    [
+        mapped(
+            capsule(11.163152475005843, 16.0),
+            plate,
+            [0.0, 0.0, 0.0, 1.0],
+            [-13.669738732428417, 0.0, -0.7656463361088193],
+        ),
+        mapped(
+            capsule(8.0, 0.9655207510623386),
+            columns,
+            turn,
+            [-12.380611553368055, 13.123179349947005, 1.4927442186696105],
+        ),
+    ]
+}
+
+/// The feature of a flattened ball or capsule was the image of what the round body has within the slab, whose points
+/// are not of the image.
+#[test]
+fn points_of_flattened_balls_and_capsules_are_of_them() {
+    let [single_a, single_b] = flattened_balls::<Vec3A>();
+    let [a, b] = flattened_balls::<DVec3>();
+    let found = contact(&single_a, &single_b, 0.0375, SignedDistanceOptions::default()).expect("near");
+    are_of_their_bodies(&found, &a, &b, 0.25);
+    let found = contact(&a, &b, 0.0375, SignedDistanceOptions::default()).expect("near");
+    are_of_their_bodies(&found, &a, &b, 0.25);
+    let [a, b] = flattened_capsules::<DVec3>();
+    let found = contact(&a, &b, 4.8, SignedDistanceOptions::default()).expect("near");
+    are_of_their_bodies(&found, &a, &b, 32.0);
 }

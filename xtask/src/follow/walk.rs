@@ -84,10 +84,8 @@ fn ran(counts: &str) -> BTreeSet<&str> {
             }
         } else if line.starts_with("calls=") {
             is_call = true;
-        } else if line.starts_with(|c: char| c.is_ascii_digit() || "+-*".contains(c)) {
-            if !std::mem::take(&mut is_call) {
-                ran.extend(here);
-            }
+        } else if line.starts_with(|c: char| c.is_ascii_digit() || "+-*".contains(c)) && !std::mem::take(&mut is_call) {
+            ran.extend(here);
         }
     }
     ran

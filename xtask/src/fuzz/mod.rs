@@ -190,5 +190,8 @@ fn tried(scope: &Scope, end: Instant, case: impl Fn(&mut Rng) -> Verdict + Sync)
         (tried, failed)
     };
     let lanes = 0..rayon::current_num_threads() as u64;
-    lanes.into_par_iter().map(until_end).reduce(|| (0, 0), |(tried, failed), (more, other)| (tried + more, failed + other))
+    lanes
+        .into_par_iter()
+        .map(until_end)
+        .reduce(|| (0, 0), |(tried, failed), (more, other)| (tried + more, failed + other))
 }

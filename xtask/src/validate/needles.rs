@@ -157,7 +157,7 @@ impl Cell {
 /// A question about a shape with a place on it, and a direction towards that.
 fn question(query: &str, shape: &str, precision: &str, aspect: f64, k: u64, rng: &mut Rng) -> Value {
     let aspect = aspect * (1.0 - 0.25 * rng.unit());
-    let [width, height] = if k % 2 == 0 { [1.0, aspect] } else { [aspect, 1.0] };
+    let [width, height] = if k.is_multiple_of(2) { [1.0, aspect] } else { [aspect, 1.0] };
     let other = width * (1.0 - 0.5 * rng.unit());
     let [x, z] = unit_circle(rng);
     let near = 0.1 / (1u64 << rng.below(12)) as f64;
@@ -201,7 +201,7 @@ fn question(query: &str, shape: &str, precision: &str, aspect: f64, k: u64, rng:
     let fields = match query {
         "ray_cast" => json!({"target": body, "source": along(distance), "direction": towards}),
         _ => {
-            let partner = if k % 3 == 0 {
+            let partner = if k.is_multiple_of(3) {
                 json!({"type": "ball", "radius": 0.25})
             } else {
                 json!({"type": "cuboid", "half_extents": [0.25, 0.5, 0.125]})

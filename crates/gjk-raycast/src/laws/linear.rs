@@ -120,6 +120,9 @@ pub fn linear_cast_judged<V: Vector>(
     report
 }
 
+/// The signed distance of the bodies at a time.
+type Later<'f, V> = &'f dyn Fn(<V as Vector>::Scalar) -> Option<SignedDistance<V>>;
+
 /// Bodies that may begin in contact get deeper, or do not.
 ///
 /// The signed distance of bodies that move straight is a convex function of time, since that of planes is linear, and
@@ -128,7 +131,7 @@ fn deeper<V: Vector>(
     told: &[Told],
     start: &SignedDistance<V>,
     scale: &Scale,
-    (at, relative): (&dyn Fn(V::Scalar) -> Option<SignedDistance<V>>, Numbers),
+    (at, relative): (Later<'_, V>, Numbers),
     beyond: super::cast::Beyond<'_>,
     report: &mut Report,
 ) {
