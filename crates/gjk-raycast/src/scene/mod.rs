@@ -79,8 +79,8 @@ pub use self::result::{
 ///
 /// # Groups
 /// A compound is represented by several bodies that are moved together. [`among`](Self::among) restricts a question
-/// to the bodies that a closure picks, such as those of a layer, and [`Among::without_pairs`] leaves out pairs, such
-/// as those of neighbouring links.
+/// to the bodies that a closure picks, such as those of a layer, and
+/// [`Among::without_pairs`](crate::Among::without_pairs) leaves out pairs, such as those of neighbouring links.
 #[derive(Clone, Debug)]
 pub struct Scene<S: SupportMap> {
     bodies: Vec<Option<Body<S>>>,
