@@ -306,6 +306,9 @@ fn only_if_deeper<V: Vector>(
             }
             let upper = answer.upper.min(upper.max(answer.lower));
             answer.upper = answer.outcome.until(options.max_time, upper, |hit| hit.time);
+            if let Outcome::Hit(hit) = &mut answer.outcome {
+                hit.time = hit.time.min(answer.upper);
+            }
         }
         None => {
             let is_given_up = answer.iterations >= options.max_iterations;
@@ -345,7 +348,7 @@ impl<V: Vector> StartingPair<'_, V> {
         let only_touches = start.upper >= self.target;
         if !only_touches {
             // They are certainly deeper than touching, whatever the motion.
-            answer.upper = zero;
+            (answer.upper, answer.status) = (zero, Status::Converged);
         }
         let normal = only_touches.then_some(start.normal);
         answer.outcome = Outcome::Hit(Impact { time: zero, point: at_start.point_b, normal });

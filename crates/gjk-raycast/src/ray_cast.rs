@@ -183,7 +183,7 @@ fn late<V: Vector>(
                 if early.upper <= zero && behind.upper <= zero { begin } else { begin + slack + behind.upper + error };
             let outcome = Outcome::Hit(RayHit { lambda: begin, point: ray.at(begin), normal: None });
             let iterations = early.iterations + behind.iterations;
-            RayCast { outcome, lower: begin, upper, status: Status::Converged, iterations }
+            RayCast { outcome, lower: begin, upper, status: behind.status, iterations }
         }
         _ => {
             let (mut answer, start) = (early, begin - slack);

@@ -56,7 +56,8 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
                 let outcome = Outcome::Hit(RayHit { lambda: end, point: ray.at(end), normal: None });
                 // It is in the shape from where it enters for certain to where it leaves at the earliest.
                 let lower = if entry.is_certain() { end.min(exit.lower) } else { -infinity };
-                RayExit { outcome, lower, upper: end, status: Status::Converged, ..exit }.on_ray(begin)
+                let status = if lower < end { exit.status } else { Status::Converged };
+                RayExit { outcome, lower, upper: end, status, ..exit }.on_ray(begin)
             }
             Outcome::Miss(miss) => RayExit { outcome: Outcome::Miss(miss), status: entry.status, ..exit }.missed(),
             Outcome::Undecided => {

@@ -15,7 +15,8 @@ pub enum Status {
     /// The iterations were used up before the bracket was that narrow.
     IterationLimit,
     /// No further progress was possible in floating point before the bracket was that narrow, for example if a hit may
-    /// be a miss; or a support map returned numbers that are not finite.
+    /// be a miss, or is certain only some way behind where it is found; or a support map returned numbers that are not
+    /// finite.
     Stalled,
 }
 

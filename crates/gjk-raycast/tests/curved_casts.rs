@@ -120,7 +120,7 @@ fn cylinder_and_cone(turn: [f64; 4], place: [f64; 3], velocity: [f64; 3], time: 
     let count = |_: Iterate<'_, DVec3>| searched += 1;
     let cast = linear_cast_with(shapes[0], shapes[1], motion, LinearCastOptions::default(), count);
     let cast = cast.expect("a finite motion");
-    assert_eq!(cast.status == Status::Converged, cast.is_certain(), "{cast:?}");
+    assert!(cast.status != Status::Converged || cast.is_certain(), "{cast:?}");
     assert!(cast.lower <= time + 1e-14 && cast.upper >= time - 1e-14, "{cast:?} is not about {time}");
     let found = cast.outcome.hit().expect("they meet").time;
     assert!((found - time).abs() < 1e-12, "{found}, not {time}");

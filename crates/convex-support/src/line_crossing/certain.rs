@@ -128,11 +128,11 @@ const OF_TURN: f64 = 11.0;
 const OF_SPLIT: f64 = 16.0;
 
 /// The largest length of a bracket along a line, in errors; a longer one is computed [more closely](super::closely).
-const WIDE: f64 = 1024.0;
+const WIDE: f64 = 64.0;
 
 /// The square of the sine of the angle with a cylinder's side below which a line counts as nearly along it, and is
 /// computed more closely.
-const ALONG: f64 = 1.0 / (WIDE * WIDE);
+const ALONG: f64 = 1.0 / (1024.0 * 1024.0);
 
 /// A line near a shape, relative to the shape's origin, from a point at most [`NEAR`] sizes away.
 #[derive(Clone, Copy, Debug)]

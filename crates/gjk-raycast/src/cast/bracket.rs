@@ -27,6 +27,12 @@ const LEANS: f64 = 1.0 / 64.0;
 /// How far rounding moves the points that a search compares, in units of ε times the size.
 pub(super) const NOISE: f64 = 8.0;
 
+/// The greatest depth at the upper bound of a converged answer, in errors.
+pub(super) const NARROW: f64 = 40.0;
+
+/// The same, in roundings of the way there.
+const NARROW_OF_WAY: f64 = 512.0;
+
 /// The least depth, in errors, of a ray in a ball that rolls within the body, for its slope to prove where it is in
 /// the body.
 pub(super) const DEEP: f64 = 64.0;
@@ -90,9 +96,14 @@ pub(super) struct Bracket<'a, V: Vector> {
     low: PlaneCrossing<V::Scalar>,
     /// The unit normal of that plane; `None` as long as no plane was crossed.
     normal: Option<V>,
+    /// The greatest place of a crossing less its error: the ray is not in the body before it. A steep plane that is
+    /// crossed earlier than the last one has a smaller error.
+    certain_low: V::Scalar,
     /// Where the ray is in the body, at the latest.
     high: Bound<V::Scalar>,
     entry: EntryProof,
+    /// How deep the ray is behind a further plane at the upper bound, or before it.
+    depth: V::Scalar,
     /// Where the line enters the hull of known points of the body.
     hull: V::Scalar,
     /// Three points of the body that surround the line as seen along it, two in the plane, if a search found them.
@@ -155,8 +166,10 @@ impl<'a, V: Vector> Bracket<'a, V> {
             chord: (squared, half_chord),
             low: PlaneCrossing { bound: Bound::exact(ray.start.max(-half_chord)), slope: zero },
             normal: None,
+            certain_low: -V::Scalar::infinity(),
             high: Bound::exact(V::Scalar::infinity()),
             entry: EntryProof::BySlope,
+            depth: V::Scalar::infinity(),
             hull: V::Scalar::infinity(),
             around: None,
         }
@@ -247,6 +260,31 @@ impl<'a, V: Vector> Bracket<'a, V> {
         self.noise.max(self.options.tolerance).min(Scalar::from_f64(LARGEST_TOLERANCE))
     }
 
+    /// How deep the body may be entered at the upper bound of a converged answer. It is half of what `docs/evidence.md`
+    /// says of both bounds.
+    pub(super) fn narrow(&self) -> V::Scalar {
+        let number = V::Scalar::from_f64;
+        let way = (self.low() - self.ray.start).max(Scalar::ZERO);
+        self.error * number(NARROW) + way * V::Scalar::EPSILON * number(NARROW_OF_WAY) + self.tolerance()
+    }
+
+    /// Whether a converged answer may have this upper bound. The ray is no deeper in the body than behind a plane that
+    /// supports it.
+    pub(super) fn is_narrow(&self, upper: V::Scalar) -> bool {
+        let narrow = self.narrow();
+        (upper - self.low()) * self.slope_or_one() <= narrow || self.depth <= narrow
+    }
+
+    /// Measures the depth at the upper bound behind the plane across the unit vector `n`, and returns the point where
+    /// that supports the body.
+    pub(super) fn measure_depth(&mut self, n: V) -> Option<V> {
+        let (point, _) = self.support(n, n, &[]).ok()?;
+        let point = point + n * self.radius;
+        let depth = n.dot(point - self.ray.line.at(self.high.at)).abs();
+        self.depth = if depth < self.depth { depth } else { self.depth };
+        Some(point)
+    }
+
     /// Where on the line the ray ends, or leaves the ball about the body.
     pub(super) fn end(&self) -> V::Scalar {
         self.chord.1.min(self.ray.mu(self.options.max_lambda))
@@ -316,12 +354,20 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// ends the search.
     #[inline(never)]
     pub(super) fn advance(&mut self, n: V, point: V) -> Result<(), Stop<V>> {
-        if let Some(crossing) = self.crossing(n, point)?
-            && crossing.bound.at - self.noise * crossing.bound.spread >= self.earliest()
-        {
-            (self.low, self.normal) = (crossing, Some(n));
+        if let Some(crossing) = self.crossing(n, point)? {
+            let Bound { at, spread, .. } = crossing.bound;
+            self.exclude_until(at - self.error * spread);
+            if at - self.noise * spread >= self.earliest() {
+                (self.low, self.normal) = (crossing, Some(n));
+            }
         }
         Ok(())
+    }
+
+    /// Records that the ray is certainly not in the body before a place.
+    #[inline(always)]
+    pub(super) fn exclude_until(&mut self, certain: V::Scalar) {
+        self.certain_low = if certain > self.certain_low { certain } else { self.certain_low };
     }
 
     /// The search ends if the plane across `n` that supports the core at `point` has the rest of the ray before it;
@@ -496,7 +542,10 @@ impl<'a, V: Vector> Bracket<'a, V> {
     pub(super) fn bounds(&self, contact: Option<V::Scalar>) -> (V::Scalar, V::Scalar) {
         let widened = |bound: Bound<_>| self.ray.error(bound.at, self.certain(bound));
         // A λ that overflows, or is NaN, bounds nothing.
-        let lower = self.ray.lambda(self.low()) - widened(self.low.bound);
+        let mut lower = self.ray.lambda(self.low()) - widened(self.low.bound);
+        if self.certain_low > self.low() - self.certain(self.low.bound) {
+            lower = lower.max(self.ray.lambda(self.certain_low) - self.ray.error(self.certain_low, Scalar::ZERO));
+        }
         let lower = if lower < V::Scalar::infinity() { lower.max(Scalar::ZERO) } else { Scalar::ZERO };
         let upper = self.ray.lambda(self.high.at) + self.ray.error(self.high.at, self.delay());
         match contact {

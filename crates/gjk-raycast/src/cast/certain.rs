@@ -5,7 +5,7 @@ use convex_support::numerics::range::comfortable_unit_of_length;
 use convex_support::{CertainCrossing, LineQuery, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::bracket::Bracket;
+use super::bracket::{Bracket, NARROW};
 use super::line::Line;
 use super::{CastHit, ObstacleCast, RayContact, Stop};
 use crate::body::{CastBody, Measures, ScalarFrom};
@@ -45,7 +45,8 @@ pub(crate) fn certain<V: Vector>(
             // infinity decide nothing.
             if (earliest > zero) & (latest <= last_number(options.max_lambda)) {
                 (Outcome::Hit(RayHit { lambda: entry, point: ray.at(entry), normal: Some(normal) }), bounds)
-            } else if (earliest > options.max_lambda) & (latest < infinity) {
+            } else if (earliest > options.max_lambda) & (latest < infinity) & (normal.dot(ray.direction) < zero) {
+                // At a rim the normal may be that of a side that the ray does not cross, and then tells nothing.
                 missed(normal)
             } else {
                 return None;
@@ -101,7 +102,7 @@ pub(crate) fn certain_closely<B: CastBody + ?Sized>(
             Some(CertainCrossing::Enters { bounds: [earliest, latest], normal, .. }) => {
                 let (outcome, bound) = if latest <= zero && options.max_lambda >= zero {
                     (Outcome::Hit(RayHit { lambda: zero, point: ray.source, normal: None }), zero)
-                } else if earliest > zero {
+                } else if earliest > zero && normal.dot(line.direction) < zero {
                     (Outcome::Miss(Miss { axis: normal }), infinity)
                 } else {
                     return None;
@@ -166,10 +167,13 @@ pub(super) fn at_certain_entry<V: Vector>(bracket: &mut Bracket<'_, V>) -> Resul
     let n = axis.unit().ok_or(Stop::InDoubt)?;
     let (point, _) = bracket.support(n, n, &[])?;
     bracket.advance(n, point)?;
-    let CertainCrossing::Enters { entry, bounds: [_, latest], normal } = known else { return Err(Stop::InDoubt) };
+    let CertainCrossing::Enters { entry, bounds: [earliest, latest], normal } = known else {
+        return Err(Stop::InDoubt);
+    };
     let point = line.at(entry) - normal * bracket.radius;
     let witness = bracket.body.witness(point);
     let found = bracket.close(bracket.radius, point, witness, entry)?;
+    bracket.exclude_until(earliest);
     bracket.enter_for_certain(latest);
     Ok(found)
 }
@@ -187,11 +191,12 @@ impl<V: Vector> ObstacleCast<V> {
     /// What is certain of a ray and a body.
     pub(crate) fn of_certain<B: CastBody<Vector = V> + ?Sized>(answer: &RayCast<V>, body: &B, ray: Ray<V>) -> Self {
         let &RayCast { outcome, lower, upper, status, iterations } = answer;
-        let Measures { origin, radius, .. } = body.measures();
+        let Measures { origin, radius, extent, error, .. } = body.measures();
         let outcome = outcome.map(|RayHit { lambda, normal, .. }| {
             let spot = (ray.source - origin) + ray.direction * lambda;
             CastHit { lambda, normal, spot, witness: body.witness(spot - normal.unwrap_or_default() * radius) }
         });
-        Self { outcome, lower, upper, status, iterations, scale: Scalar::ONE }
+        let narrow = (roundings(24.0, extent + radius) + error) * V::Scalar::from_f64(NARROW);
+        Self { outcome, lower, upper, status, iterations, scale: Scalar::ONE, narrow }
     }
 }

@@ -162,6 +162,8 @@ pub(crate) struct ObstacleCast<V: Vector> {
     pub(crate) iterations: usize,
     /// The unit of the hit spot and of the witness.
     pub(crate) scale: V::Scalar,
+    /// How deep the body may be entered at the upper bound of a converged answer.
+    narrow: V::Scalar,
 }
 
 /// Where the ray enters the body.
@@ -188,7 +190,8 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
                 (Outcome::Miss(Miss { axis }), (infinity, infinity), Status::Converged)
             } else {
                 let hit = CastHit { lambda, normal, spot: ray.line.at(mu), witness };
-                (Outcome::Hit(hit), (lower, upper), Status::Converged)
+                let status = if bracket.is_narrow(ray.mu(upper)) { Status::Converged } else { Status::Stalled };
+                (Outcome::Hit(hit), (lower, upper), status)
             }
         }
         Err(Stop::Miss(n)) => {
@@ -199,6 +202,6 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
             (Outcome::Undecided, bracket.bounds(None), status)
         }
     };
-    let (iterations, scale) = (bracket.iterations, bracket.scale);
-    ObstacleCast { outcome, lower, upper, status, iterations, scale }
+    let (iterations, scale, narrow) = (bracket.iterations, bracket.scale, bracket.narrow() * bracket.scale);
+    ObstacleCast { outcome, lower, upper, status, iterations, scale, narrow }
 }

@@ -42,9 +42,15 @@ pub(super) fn bound_entry<V: Vector>(bracket: &mut Bracket<'_, V>) {
     let late = mu + error * V::Scalar::from_f64(LATE);
     let known = bracket.around.map(|points| frame.polygon(points));
     let is_near = |known: &Polygon<_>| known.latest_entry(mu, error).is_some_and(|latest| latest <= late);
-    let Some(polygon) = known.filter(is_near).or_else(|| frame.look_around(bracket, error)) else { return };
+    let Some(mut polygon) = known.filter(is_near).or_else(|| frame.look_around(bracket, error)) else { return };
     if let Some(latest) = polygon.latest_entry(mu, error) {
         bracket.enter_for_certain(latest);
+        while !bracket.is_narrow(latest) && polygon.len < MAX_CORNERS {
+            let Some(i) = polygon.nearest_of(|_| true) else { return };
+            let Some(n) = (frame.vector(polygon.beside(i, mu)) - frame.line.direction).unit() else { return };
+            let Some(point) = bracket.measure_depth(n) else { return };
+            polygon.insert(i + 1, frame.corner(point));
+        }
     }
 }
 
@@ -178,6 +184,15 @@ impl<S: Scalar> Polygon<S> {
     fn nearest_of(&self, is_meant: impl Fn(&PolygonSide<S>) -> bool) -> Option<usize> {
         let meant = (0..self.len).filter(|&i| is_meant(&self.sides[i]));
         meant.reduce(|i, j| if self.sides[j].distance < self.sides[i].distance { j } else { i })
+    }
+
+    /// The plane through the point at `mu` on the line and a side, by how steeply it rises across the line.
+    fn beside(&self, i: usize, mu: S) -> Across<S> {
+        let [c, d] = [i, (i + 1) % self.len].map(|i| self.sides[i].corner);
+        let (up_c, up_d) = (c.along - mu, d.along - mu);
+        let per_area = cross(c.across, d.across).recip();
+        let (c, d) = (c.across, d.across);
+        ((up_c * d.1 - up_d * c.1) * per_area, (c.0 * up_d - d.0 * up_c) * per_area)
     }
 
     /// Where the line is in the body, at the latest, given a point of the body at `mu` to within an error; `None` if

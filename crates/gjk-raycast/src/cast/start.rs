@@ -72,10 +72,15 @@ pub(super) fn settle<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodies<'_
     // vector from the target to the source.
     let axis = -near.normal;
     let closing = dot_minus((0..V::DIM).map(|i| (near.normal.get(i), direction.get(i))), zero);
+    // Of a point found deep inside, no plane is one of contact.
+    let is_at_plane = near.gap.abs() <= near.upper;
+    let speed = direction.norm();
+    let sinking = if is_at_plane { closing.max(sliding(speed)) } else { speed };
     if !near.is_separated() {
         // The source is in the target, to its own error, or nothing is known.
         if near.overlap().is_some() {
-            cast.touch(latest_entry([&a, b], direction, closing, &near, looks), spot);
+            let speed = if closing > sliding(speed) { sinking } else { speed };
+            cast.touch(latest_entry([&a, b], direction, speed, &near, looks), spot);
         }
     } else if closing <= zero {
         cast.miss(axis);
@@ -90,6 +95,12 @@ pub(super) fn settle<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodies<'_
         } else {
             cast.enter(lambda, axis, lower, entry, spot);
         }
+    }
+    if cast.outcome.is_hit()
+        && cast.status == Status::Converged
+        && !((cast.upper - cast.lower) * sinking <= cast.narrow)
+    {
+        cast.status = Status::Stalled;
     }
     cast.iterations += looks.iterations;
 }
@@ -137,7 +148,7 @@ struct Spot<V: Vector> {
 fn latest_entry<V: Vector>(
     shapes: [Shape<'_, V>; 2],
     direction: V,
-    closing: V::Scalar,
+    speed: V::Scalar,
     near: &NearContact<V>,
     looks: &mut Looks,
 ) -> V::Scalar {
@@ -145,10 +156,6 @@ fn latest_entry<V: Vector>(
     if near.overlaps_certainly || near.upper <= zero {
         return zero;
     }
-    // Of a point found deep inside, no plane is one of contact.
-    let is_at_plane = near.gap.abs() <= near.upper;
-    let speed = direction.norm();
-    let speed = if is_at_plane && closing > sliding(speed) { closing } else { speed };
     entry(shapes, direction, speed, near, looks).certain()
 }
 
@@ -307,7 +314,7 @@ impl<V: Vector> ObstacleCast<V> {
             Outcome::Hit(hit) => hit.lambda,
             _ => zero,
         };
-        (self.lower, self.upper) = (zero, within.max(lambda));
+        (self.lower, self.upper, self.status) = (zero, within.max(lambda), Status::Converged);
     }
 
     /// Turns a hit at the source, as known so far, into one at `lambda`, if a plane across `axis` excludes any hit
@@ -318,7 +325,7 @@ impl<V: Vector> ObstacleCast<V> {
         let is_found = entry.is_certain || self.lower <= entry.at;
         match &mut self.outcome {
             Outcome::Hit(hit) if is_found => {
-                self.upper = upper;
+                (self.upper, self.status) = (upper, Status::Converged);
                 (hit.lambda, hit.normal) = (lambda.max(self.lower).min(upper), Some(axis));
             }
             Outcome::Undecided if entry.is_certain => {

@@ -12,7 +12,7 @@ use crate::{Cast, Outcome, Status};
 
 /// How far apart or deep the bodies may be within a converged bracket, in units of ε times the size and the way, plus the
 /// errors.
-const WIDTH: f64 = 64.0;
+const WIDTH: f64 = 1024.0;
 
 /// How far a plane may be from where it should be, in the same unit.
 const PLANE: f64 = 64.0;
@@ -164,10 +164,14 @@ impl Casts<'_> {
     ) {
         let Some(gap) = self.gap.filter(|_| lower < upper) else { return };
         let times = [lower, 0.75 * lower + 0.25 * upper, 0.5 * (lower + upper), 0.25 * lower + 0.75 * upper, upper];
-        let off = times
-            .into_iter()
-            .filter_map(gap)
-            .fold(0.0, |most: f64, [least, greatest]| most.max(least - self.target).max(self.target - greatest));
+        let gaps = times.into_iter().filter_map(gap);
+        // Where the bodies begin in contact, they are no deeper than there.
+        let least = if lower == 0.0 {
+            gap(0.0).map_or(self.target, |[deepest, _]| deepest.min(self.target))
+        } else {
+            self.target
+        };
+        let off = gaps.fold(0.0, |off: f64, [lower, upper]| off.max(lower - self.target).max(least - upper));
         let allowed = WIDTH * self.unit + tolerance * self.size;
         report.widest(query, off / allowed);
         report.claim((Law::Width, query), off <= allowed, || {

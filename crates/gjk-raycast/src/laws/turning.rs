@@ -134,8 +134,13 @@ fn look(gap: Gap<'_>, told: &[Told], target: f64, report: &mut Report) {
     if latest.is_finite() {
         let found = told.iter().find(|one| one.latest() <= latest);
         if let Some(one) = found.filter(|one| one.bounds()[1] <= latest) {
-            let apart = gap(latest).map_or(f64::NEG_INFINITY, |gap| gap[0]);
-            report.claim((Law::Bound, "motion_cast"), apart <= target, || {
+            // Bodies without an inside, or that graze, may have parted again.
+            let earliest = one.bounds()[0];
+            let before = |k| earliest + (latest - earliest) * f64::from(k) / f64::from(LOOKS);
+            let gap_at = |time| gap(time).map_or(f64::NEG_INFINITY, |gap| gap[0]);
+            let apart = gap_at(latest);
+            let was_nearer = || (0..LOOKS).any(|k| gap_at(before(k)) < apart);
+            report.claim((Law::Bound, "motion_cast"), apart <= target || was_nearer(), || {
                 format!("the bodies are {apart:e} apart at the upper bound: {}", one.answer())
             });
         }

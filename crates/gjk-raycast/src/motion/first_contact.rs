@@ -324,6 +324,26 @@ impl<'p, V: Vector> Search<'p, V> {
         });
     }
 
+    /// Whether the bodies are no deeper at the upper bound, or have sunk no more until then, than a converged answer may
+    /// leave open: by their speed, or else by the plane of the last time at which they are apart.
+    fn is_narrow(&self) -> bool {
+        let (number, Instant { time, normal, gap, closing, .. }) = (V::Scalar::from_f64, self.near);
+        let (zero, width, size) = (V::Scalar::ZERO, self.upper - time, self.bodies.size());
+        if width <= zero {
+            return true;
+        }
+        let tolerance = size * self.options.tolerance;
+        let most = self.bodies.acceleration_along(TurningPlane { from: normal, to: normal }, [time, self.upper]);
+        let sunk = width * (closing + most * width * number(0.5)) - gap.min(zero);
+        if sunk <= size * V::Scalar::EPSILON * number(64.0) + tolerance {
+            return true;
+        }
+        let before = if self.base.stage == Stage::Apart { zero } else { self.bodies.level(time, normal).0 };
+        let (after, error) = self.bodies.level(self.upper, normal);
+        // NaN is not narrow.
+        before - after <= error * number(8.0) + tolerance
+    }
+
     fn answer(&self, end: MotionEnd<V>) -> MotionCast<V> {
         let Instant { time: near, point, normal, .. } = self.near;
         let mut lower = self.lower();
@@ -346,8 +366,8 @@ impl<'p, V: Vector> Search<'p, V> {
             }
         };
         let upper = outcome.until(self.options.max_time, self.upper, |hit| hit.time);
+        let status = status.of(&outcome, upper < V::Scalar::infinity() && self.is_narrow());
         let iterations = self.bodies.iterations();
-        let status = status.of(&outcome, upper < V::Scalar::infinity());
         MotionCast { outcome, lower, upper, status, iterations }
     }
 }
