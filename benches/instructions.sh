@@ -47,7 +47,7 @@ awk 'NR == FNR { if ($1 != "#") before[$1] = $2; next }
      {
          change = before[$1] ? 100 * ($2 - before[$1]) / before[$1] : 100
          verdict = change > 3 ? "MORE" : change < -3 ? "LESS: run with --write" : "same"
-         printf "%-32s %12d %12d %+7.1f %%  %s\n", $1, before[$1], $2, change, verdict
+         printf "%-38s %12d %12d %+7.1f %%  %s\n", $1, before[$1], $2, change, verdict
          if (verdict != "same") failed = 1
      }
      END { exit failed }' "$table" "$scratch/table"

@@ -2,8 +2,8 @@
 
 use crate::reference::{Pose, Shortest, shortest_vector};
 use crate::rng::Rng;
-use crate::shapes::Shape;
-use crate::vec3::{Vec3, add, norm, scale};
+use crate::shapes::{Shape, point_inside};
+use crate::vec3::{Vec3, add, conjugate, neg, norm, rotate, scale, sub};
 
 /// Names of the pairs, in the order of their numbers: first `A`, then `B`.
 pub const PAIR_NAMES: [&str; 12] = [
@@ -70,6 +70,14 @@ impl Pair {
                 return Touch { pose, normal: scale(v, 1.0 / norm(v)) };
             }
         }
+    }
+
+    /// `B` in a random rotation, touching `A` well inside one of these triangles of its faces.
+    pub(crate) fn touch_inside(&self, faces: &[[Vec3; 3]], rng: &mut Rng) -> Touch {
+        let (point, outward) = point_inside(faces, rng);
+        let (rotation, normal) = (rng.quat(), neg(outward));
+        let lowest = rotate(rotation, self.b.support(rotate(conjugate(rotation), normal)));
+        Touch { pose: Pose { rotation, translation: sub(point, lowest) }, normal }
     }
 }
 

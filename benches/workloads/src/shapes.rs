@@ -4,8 +4,9 @@ use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Rounded, Scalar, SupportMap, Vector3,
 };
 
+use crate::convex_hull::facets;
 use crate::rng::{Rng, round_to_f32};
-use crate::vec3::{Vec3, add, dot, scale};
+use crate::vec3::{Vec3, add, cross, dot, norm, scale, sub};
 
 /// A convex shape about the origin; the y axis is the axis of symmetry.
 #[derive(Clone, Debug)]
@@ -196,6 +197,38 @@ impl Shape {
             Self::RoundBox { half_extents, radius } => add(corner(*half_extents, direction), swept(*radius, direction)),
         }
     }
+}
+
+/// A triangle in each face of a box or a hull, counter-clockwise from outside.
+///
+/// # Panics
+/// For any other shape.
+pub(crate) fn face_triangles(shape: &Shape) -> Vec<[Vec3; 3]> {
+    match shape {
+        Shape::Cuboid { half_extents } => {
+            let triangle = |axis: usize, side: f64| {
+                let corner = |j: f64, k: f64| {
+                    let mut signs = [side; 3];
+                    (signs[(axis + 1) % 3], signs[(axis + 2) % 3]) = (j, side * k);
+                    corner(*half_extents, signs)
+                };
+                [corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0)]
+            };
+            (0..3).flat_map(|axis| [1.0, -1.0].map(|side| triangle(axis, side))).collect()
+        }
+        Shape::Hull { points } => facets::<f64>(points).into_iter().map(|facet| facet.map(|i| points[i])).collect(),
+        _ => panic!("{shape:?} has curved faces"),
+    }
+}
+
+/// A point well inside one of the triangles, and the triangle's unit normal.
+pub(crate) fn point_inside(triangles: &[[Vec3; 3]], rng: &mut Rng) -> (Vec3, Vec3) {
+    let [a, b, c] = triangles[rng.below(triangles.len() as u64) as usize];
+    let weights = [0; 3].map(|_| 0.25 + rng.unit());
+    let sum: f64 = weights.iter().sum();
+    let point = [0, 1, 2].map(|i| (weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i]) / sum);
+    let normal = cross(sub(b, a), sub(c, a));
+    (point, scale(normal, 1.0 / norm(normal)))
 }
 
 /// The point of the ball about zero farthest along `direction`.

@@ -2,8 +2,8 @@
 
 use crate::line_entry::LineEntry;
 use crate::rng::{Rng, round_to_f32};
-use crate::shapes::{SHAPE_NAMES, Shape};
-use crate::vec3::{Vec3, scale, sub};
+use crate::shapes::{SHAPE_NAMES, Shape, face_triangles, point_inside};
+use crate::vec3::{Vec3, add, scale, sub};
 
 /// How many rays [`rays`] makes.
 pub const RAYS: usize = 10_000;
@@ -47,16 +47,39 @@ pub fn rays(shape_name: &str) -> Vec<Ray> {
         .map(|_| {
             let origin = scale(rng.sphere(), 5.0).map(round_to_f32);
             let target = [0, 1, 2].map(|i| rng.signed() * 1.3 * bounds[i]);
-            let direction = scale(sub(target, origin), 2.0).map(round_to_f32);
-            let cast = |size| truth.entry(origin, direction, size).filter(|lambda| (0.0..=1.0).contains(lambda));
-            let lambda = cast(1.0);
-            let changes = |by: f64| [1.0 + by, 1.0 - by].iter().any(|&size| cast(size).is_some() != lambda.is_some());
-            let ambiguity = match () {
-                () if changes(1e-9) => Ambiguity::InF64,
-                () if changes(1e-5) => Ambiguity::InF32,
-                () => Ambiguity::None,
-            };
-            Ray { origin, direction, lambda, ambiguity }
+            through(&truth, origin, target)
+        })
+        .collect()
+}
+
+/// The ray from `origin` to as far behind `target`.
+fn through(truth: &LineEntry<'_>, origin: Vec3, target: Vec3) -> Ray {
+    let direction = scale(sub(target, origin), 2.0).map(round_to_f32);
+    let cast = |size| truth.entry(origin, direction, size).filter(|lambda| (0.0..=1.0).contains(lambda));
+    let lambda = cast(1.0);
+    let changes = |by: f64| [1.0 + by, 1.0 - by].iter().any(|&size| cast(size).is_some() != lambda.is_some());
+    let ambiguity = match () {
+        () if changes(1e-9) => Ambiguity::InF64,
+        () if changes(1e-5) => Ambiguity::InF32,
+        () => Ambiguity::None,
+    };
+    Ray { origin, direction, lambda, ambiguity }
+}
+
+/// Rays that hit the box or hull of that name well inside its faces, and nearly squarely.
+///
+/// # Panics
+/// If there is no such box or hull.
+#[must_use]
+pub fn square_on_faces(shape_name: &str, count: usize) -> Vec<Ray> {
+    let shape = Shape::named(shape_name);
+    let (truth, faces) = (LineEntry::new(&shape), face_triangles(&shape));
+    let mut rng = Rng::new(1100);
+    (0..count)
+        .map(|_| {
+            let (target, normal) = point_inside(&faces, &mut rng);
+            let back = add(scale(normal, 5.0), rng.cube());
+            through(&truth, add(target, back).map(round_to_f32), target)
         })
         .collect()
 }
@@ -74,4 +97,19 @@ pub fn records(rays: &[Ray]) -> Vec<f64> {
         [a, b, c, d, e, f, ray.lambda.unwrap_or(-1.0), flag]
     };
     rays.iter().flat_map(record).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rays_square_on_faces_hit_them_halfway() {
+        for name in ["cuboid", "hull64"] {
+            for ray in square_on_faces(name, 500) {
+                let lambda = ray.lambda.expect("a hit");
+                assert!((lambda - 0.5).abs() < 1e-6 && ray.ambiguity == Ambiguity::None, "{name}: {ray:?}");
+            }
+        }
+    }
 }

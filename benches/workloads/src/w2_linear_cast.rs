@@ -3,6 +3,7 @@
 use crate::pairs::{Pair, Touch};
 use crate::reference::{Pose, shortest_vector};
 use crate::rng::{Rng, round_to_f32};
+use crate::shapes::face_triangles;
 use crate::vec3::{Vec3, add, dot, neg, norm, scale, sub};
 
 /// How many casts [`casts`] makes.
@@ -31,6 +32,18 @@ pub fn casts(pair: &Pair) -> Vec<Cast> {
             if rng.unit() >= 0.2 { hit(touch, &mut rng) } else { miss(touch, &mut rng) }
         })
         .collect()
+}
+
+/// Casts that hit a box or hull `A` well inside its faces; those of [`casts`] mostly hit vertices and edges of `A − B`,
+/// which are what is nearest from afar.
+///
+/// # Panics
+/// If `A` is no box or hull.
+#[must_use]
+pub fn inside_faces(pair: &Pair, count: usize) -> Vec<Cast> {
+    let faces = face_triangles(&pair.a);
+    let mut rng = Rng::new(2100 + pair.index);
+    (0..count).map(|_| hit(pair.touch_inside(&faces, &mut rng), &mut rng)).collect()
 }
 
 /// Ends its way to contact at `λ` between 0.3 and 0.7, at least 3° off tangential, and goes on inwards.
@@ -114,6 +127,20 @@ mod tests {
             let pair = Pair::named(name);
             let grazing = grazing(&pair, &casts(&pair));
             assert_eq!(grazing.iter().filter(|&&grazes| grazes).count(), count, "grazing hits of {name}");
+        }
+    }
+
+    #[test]
+    fn hits_inside_faces_hit_and_do_not_graze() {
+        for name in ["cuboid-cuboid", "hull64-hull64"] {
+            let pair = Pair::named(name);
+            let casts = inside_faces(&pair, 100);
+            assert_eq!(grazing(&pair, &casts), [false; 100], "{name}");
+            for cast in &casts {
+                let lambda = cast.lambda.expect("a hit");
+                assert!(at(&pair, cast, lambda - 1e-6).separated(), "{name} overlaps before {cast:?}");
+                assert!(!at(&pair, cast, lambda + 1e-6).separated(), "{name} is apart after {cast:?}");
+            }
         }
     }
 

@@ -30,8 +30,8 @@ use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner, contextualize_config};
 
 use crate::{
-    CertainCrossing, CoreKind, Hint, LineQuery, Scalar, SupportMap, Vector, bounding_box, bounding_sphere, strategies,
-    support_value,
+    CertainCrossing, CoreKind, Hint, LineQuery, Rounding, Scalar, SupportMap, Vector, bounding_box, bounding_sphere,
+    strategies, support_value,
 };
 
 /// How many times its own rounding a shape may be off: a law compares up to four support points, each placed and
@@ -71,13 +71,14 @@ pub fn hold<S: SupportMap + Debug>(shapes: impl Strategy<Value = S>) {
 /// # Errors
 /// Names the first law that is broken, and by how much it is.
 pub fn check<V: Vector>(shape: AnyShape<'_, V>, d: V, e: V) -> Result<(), TestCaseError> {
-    let laws: [(&str, Law<V>); 11] = [
+    let laws: [(&str, Law<V>); 12] = [
         ("the support point reaches the support value", support_point_reaches_the_support_value),
         ("no support point reaches farther", no_support_point_reaches_farther),
         ("the support value is positively homogeneous", support_value_is_positively_homogeneous),
         ("the support value is subadditive", support_value_is_subadditive),
         ("origin, core and radius make the set", origin_core_and_radius_make_the_set),
         ("the extent bounds the core", extent_bounds_the_core),
+        ("the rounding covers what support points show", rounding_covers_what_support_points_show),
         ("the closest point of the core is the closest", closest_point_of_the_core_is_the_closest),
         ("a line enters where it certainly does", line_enters_where_it_certainly_does),
         ("hints never change the value", hints_never_change_the_value),
@@ -162,6 +163,31 @@ fn origin_core_and_radius_make_the_set<V: Vector>(
 fn extent_bounds_the_core<V: Vector>(shape: AnyShape<'_, V>, d: V, _: V, _: V::Scalar) -> Result<(), TestCaseError> {
     let extent = shape.core().extent;
     at_most(core_point(shape, d).norm(), extent, extent * V::Scalar::EPSILON * V::Scalar::from_f64(8.0))
+}
+
+/// Answers near contact are proved by the [rounding](SupportMap::rounding) alone. One that is copied from another shape,
+/// such as the part that a shape is made of, is mostly too small.
+fn rounding_covers_what_support_points_show<V: Vector>(
+    shape: AnyShape<'_, V>,
+    d: V,
+    e: V,
+    _: V::Scalar,
+) -> Result<(), TestCaseError> {
+    let Rounding { extent, error, error_length } = shape.rounding();
+    let (Some(d), Some(n)) = (d.unit(), e.unit()) else { return Ok(()) };
+    // A point is beyond the core by an error at most, and the farthest one short of it by another; the products round.
+    let claimed = n.abs().dot(error).min(error_length);
+    let products = V::Scalar::EPSILON * V::Scalar::from_f64(8.0) * n.abs().dot(extent);
+    let farthest = n.dot(core_point(shape, n));
+    // The support points along a direction nearby reach nearly as far, so that errors are seen.
+    for d in [d, n + d * V::Scalar::EPSILON.sqrt()] {
+        let k = core_point(shape, d);
+        for i in 0..V::DIM {
+            at_most(k.get(i).abs(), extent.get(i), V::Scalar::ZERO)?;
+        }
+        at_most(n.dot(k), farthest, claimed + claimed + products)?;
+    }
+    Ok(())
 }
 
 fn closest_point_of_the_core_is_the_closest<V: Vector>(

@@ -1,10 +1,10 @@
 //! The laws of support maps, one property each, over every shape and combinator in every space.
 
-use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
+use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Quat, Vec2, Vec3, Vec3A};
 use convex_support::strategies::{self, AnyShape};
 use convex_support::{
-    Affine, Ball, Difference, Hint, Hull, Matrix, MinkowskiSum, Posed, Rotation, Rounded, Scalar, SupportMap, Vector,
-    laws, support_value,
+    Affine, Ball, Core, CoreKind, Cuboid, Difference, Ellipsoid, Hint, Hull, Matrix, MinkowskiSum, Posed, Rotation,
+    Rounded, Rounding, Scalar, SupportMap, Vector, laws, support_value,
 };
 use num_traits::Float;
 use proptest::prelude::*;
@@ -27,6 +27,77 @@ fn the_laws_hold_in_space() {
     laws::hold(shapes::<Vec3>(strategies::primitive_3d));
     laws::hold(shapes::<Vec3A>(strategies::primitive_3d));
     laws::hold(shapes::<DVec3>(strategies::primitive_3d));
+}
+
+/// The law that a shape breaks along any of some directions.
+fn broken(shape: &dyn SupportMap<Vector = DVec3>) -> Option<String> {
+    let direction = |i: u32| DVec3::new((1.3 * f64::from(i)).sin(), (2.1 * f64::from(i)).cos(), 0.5);
+    let law = |i: u32| laws::check(shape, direction(i), direction(i + 1)).err();
+    (0..100).find_map(law).map(|broken| broken.to_string())
+}
+
+const OF_ROUNDING: &str = "the rounding covers what support points show";
+
+/// A turned box that says of its rounding what the box in it says: that its coordinates are no larger.
+#[test]
+fn a_rounding_copied_from_a_part_breaks_a_law() {
+    #[derive(Debug)]
+    struct Turned(Posed<Cuboid<DVec3>>, bool);
+
+    impl SupportMap for Turned {
+        type Vector = DVec3;
+
+        fn support(&self, direction: DVec3) -> DVec3 {
+            self.0.support(direction)
+        }
+
+        fn core(&self) -> Core<DVec3> {
+            self.0.core()
+        }
+
+        fn core_support(&self, direction: DVec3, hint: &mut Hint) -> DVec3 {
+            self.0.core_support(direction, hint)
+        }
+
+        fn rounding(&self) -> Rounding<DVec3> {
+            if self.1 { self.0.shape().rounding() } else { self.0.rounding() }
+        }
+    }
+
+    let cuboid = Cuboid::new(DVec3::new(1.0, 2.0, 3.0)).expect("a box");
+    let turned = Posed::new(cuboid, DQuat::from_xyzw(0.1, 0.2, 0.3, 0.9), DVec3::X).expect("a pose");
+    let law = broken(&Turned(turned, true)).expect("the rounding is copied");
+    assert!(law.contains(OF_ROUNDING), "{law}");
+    assert_eq!(broken(&Turned(turned, false)), None);
+}
+
+/// An ellipsoid in single precision within double, whose core says so and whose rounding is that of a shape in double.
+#[test]
+fn a_rounding_that_is_too_small_breaks_a_law() {
+    #[derive(Debug)]
+    struct Single(Ellipsoid<Vec3A>, f64);
+
+    impl SupportMap for Single {
+        type Vector = DVec3;
+
+        fn support(&self, direction: DVec3) -> DVec3 {
+            self.0.support(direction.as_vec3a()).as_dvec3()
+        }
+
+        fn core(&self) -> Core<DVec3> {
+            Core { error: 1e-6, ..Core::exact(CoreKind::Curved, 4.0) }
+        }
+
+        fn rounding(&self) -> Rounding<DVec3> {
+            Rounding::relative(DVec3::splat(3.0), self.1)
+        }
+    }
+
+    let ellipsoid = Ellipsoid::new(Vec3A::ZERO, Vec3A::new(1.0, 2.0, 3.0), Quat::IDENTITY).expect("an ellipsoid");
+    let in_single = 8.0 * f64::from(f32::EPSILON) / f64::EPSILON;
+    let law = broken(&Single(ellipsoid, 4.0)).expect("the rounding is that of another precision");
+    assert!(law.contains(OF_ROUNDING), "{law}");
+    assert_eq!(broken(&Single(ellipsoid, in_single)), None);
 }
 
 fn combinators_are_their_formulas_in<V: Vector>(primitive: fn(V::Scalar) -> BoxedStrategy<AnyShape<V>>) {
@@ -141,8 +212,8 @@ fn a_scaled_or_mirrored_ball_stays_a_ball() {
 /// matters.
 #[test]
 fn support_points_do_not_depend_on_the_length_of_the_direction() {
-    use convex_support::glam::{Mat3A, Quat};
-    use convex_support::{Cone, Cuboid, Cylinder, Ellipsoid, Polytope};
+    use convex_support::glam::Mat3A;
+    use convex_support::{Cone, Cylinder, Polytope};
 
     for size in [1e-30_f32, 1e-18, 1.0, 1e18, 1e30] {
         for thin in [1.0, 1e-6] {
@@ -182,7 +253,7 @@ fn support_points_do_not_depend_on_the_length_of_the_direction() {
 #[test]
 fn a_shape_placed_far_away_loses_nothing_of_itself() {
     use convex_support::Polytope;
-    use convex_support::glam::{Mat3A, Quat};
+    use convex_support::glam::Mat3A;
 
     let corners = [[0.3, 0.1, 0.2], [0.9, 0.3, 0.1], [0.2, 0.8, 0.4], [0.5, 0.4, 0.7]].map(Vec3A::from);
     let far = Vec3A::new(3e6, -1e6, 2e6);

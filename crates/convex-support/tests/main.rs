@@ -12,6 +12,7 @@ mod hessian;
 mod hull;
 mod laws;
 mod line_crossing;
+mod primitives;
 mod rounding;
 mod serde;
 mod support_feature;

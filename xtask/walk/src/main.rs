@@ -16,10 +16,11 @@ use gjk_raycast::{
 };
 
 /// The names of the questions.
-const NAMES: [&str; 20] = [
+const NAMES: [&str; 21] = [
     "ray_hull",
     "ray_box",
     "ray_roundhull",
+    "ray_plane_polygon",
     "scene_hull",
     "distance_hull",
     "distance_box",
@@ -59,9 +60,13 @@ fn main() -> Answer {
     let [a, b] = hulls;
     let (far, deep) = (DVec3::new(-4.0, 0.3, 0.2), DVec3::new(-0.7, 0.3, 0.2));
     match name.as_str() {
-        "ray_hull" => counted_ray(&aside(a)?),
-        "ray_box" => counted_ray(&aside(block)?),
-        "ray_roundhull" => counted_ray(&aside(Rounded::new(a, 0.1)?)?),
+        "ray_hull" => counted_ray(&aside(a)?, RAY),
+        "ray_box" => counted_ray(&aside(block)?, RAY),
+        "ray_roundhull" => counted_ray(&aside(Rounded::new(a, 0.1)?)?, RAY),
+        "ray_plane_polygon" => {
+            let polygon = Polytope::new(a.points().iter().map(|point| point.truncate().normalize()))?;
+            counted_ray(&polygon, Ray { source: RAY.source.truncate(), direction: RAY.direction.truncate() })
+        }
         "scene_hull" => {
             let bodies: Result<Vec<_>, Box<dyn Error>> =
                 (0..50).map(|i| posed(hull(32, i)?, DVec3::X * (3.0 * f64::from(i)), 0.3)).collect();
@@ -123,8 +128,8 @@ fn print(answer: impl Debug) -> Answer {
 }
 
 #[inline(never)]
-fn counted_ray(shape: &impl Shape) -> Answer {
-    print(ray_cast(shape, RAY, RayCastOptions::default())?)
+fn counted_ray<S: SupportMap>(shape: &S, ray: Ray<S::Vector>) -> Answer {
+    print(ray_cast(shape, ray, RayCastOptions::default())?)
 }
 
 #[inline(never)]

@@ -3,8 +3,8 @@
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies::{AnyShape, Shape};
 use convex_support::{
-    Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Hull, InvalidShape, Matrix, MinkowskiSum,
-    Point, Polytope, Posed, Rotation, Rounded, Scalar, Segment, Triangle, Vector, Vector3,
+    Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Faceted, Hull, InvalidShape, Matrix,
+    MinkowskiSum, Point, Polytope, Posed, Rotation, Rounded, Scalar, Segment, Triangle, Vector, Vector3,
 };
 
 use super::fixed::{Fixed, dot, norm};
@@ -94,6 +94,7 @@ impl Tree {
                     [a, b] => boxed(Segment::new([a, b])),
                     [a, b, c] => boxed(Triangle::new([a, b, c])),
                     _ if p.len().is_multiple_of(2) => boxed(Polytope::new(p)),
+                    [first, ..] if first.get(0) == V::Scalar::ZERO => boxed(Faceted::hull_of(p)),
                     _ => boxed(Polytope::hull_of(p)),
                 }
             }
@@ -230,7 +231,7 @@ impl Random {
         if v == [0.0; 3] { [0.0, -1.0, 0.0] } else { v }
     }
 
-    fn leaf(&mut self) -> Tree {
+    pub(crate) fn leaf(&mut self) -> Tree {
         let lengths = [self.length(), self.length()];
         match self.below(if self.dim == 3 { 9 } else { 7 }) {
             0 => Tree::Ball(lengths[0]),

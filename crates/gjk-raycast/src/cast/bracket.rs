@@ -582,11 +582,165 @@ impl<'a, V: Vector> Bracket<'a, V> {
 }
 
 #[cfg(test)]
-mod tests {
-    use convex_support::SupportMap;
+pub(super) mod tests {
     use convex_support::glam::DVec3;
+    use convex_support::{Cuboid, SupportMap};
 
-    use crate::{Outcome, Ray, RayCastOptions, ray_cast};
+    use super::*;
+    use crate::body::Single;
+    use crate::cast::Part;
+    use crate::{Outcome, Ray, ray_cast};
+
+    /// What the bracket of a ray at a shape tells.
+    pub(in crate::cast) fn bracketed<R>(
+        shape: &impl SupportMap<Vector = DVec3>,
+        (source, direction): (DVec3, DVec3),
+        options: RayCastOptions<DVec3>,
+        ask: impl FnOnce(&mut Bracket<'_, DVec3>) -> R,
+    ) -> R {
+        let (mut body, mut observer) = (Single::new(shape), Observer::none());
+        let ray = CastRay::of(Ray { source, direction }, Part::Whole);
+        ask(&mut Bracket::new(&mut body, ray, &options, &mut observer))
+    }
+
+    /// The cube of half size 1 about zero, whose unit is 1: places on a line along x are those of x.
+    fn at_cube<R>(ray: (DVec3, DVec3), max_lambda: f64, ask: impl FnOnce(&mut Bracket<'_, DVec3>) -> R) -> R {
+        let cube = Cuboid::new(DVec3::ONE).expect("a cube");
+        let options = RayCastOptions::default().with_max_lambda(max_lambda).with_tolerance(1e-3);
+        bracketed(&cube, ray, options, ask)
+    }
+
+    /// A ray at the face x = −1 of the cube.
+    const AT_FACE: (DVec3, DVec3) = (DVec3::new(-3.0, 0.25, 0.125), DVec3::X);
+    const CORNER: DVec3 = DVec3::new(-1.0, 1.0, 1.0);
+
+    #[test]
+    fn the_lower_bound_is_the_plane_that_is_crossed_last() {
+        at_cube(AT_FACE, f64::INFINITY, |bracket| {
+            bracket.advance(DVec3::NEG_X, CORNER)?;
+            // The plane across (−1, 1, 0) is crossed at x = −7/4.
+            bracket.advance(DVec3::new(-1.0, 1.0, 0.0).normalize(), CORNER)?;
+            assert_eq!((bracket.low(), bracket.normal), (-1.0, Some(DVec3::NEG_X)));
+            Ok::<_, Stop<_>>(())
+        })
+        .expect("neither plane is before the ray");
+    }
+
+    /// Rays into the face x = −1, less and less squarely. The point that they hit, their direction and λ have few bits, so
+    /// that the source has as well, and this λ is that of the first point in the cube exactly.
+    #[test]
+    fn bounds_widen_with_the_slant_of_a_crossing_and_hold_it() {
+        for i in 0..80 {
+            let steep = 2.0_f64.powi(i / 4);
+            let (direction, known) = (DVec3::new(1.0, steep, 3.0), f64::from(4 + i % 4) / steep);
+            let hit = DVec3::new(-1.0, f64::from(i) / 128.0 - 0.25, 0.375);
+            at_cube((hit - direction * known, direction), f64::INFINITY, |bracket| {
+                bracket.advance(DVec3::NEG_X, CORNER).expect("a plane that is crossed");
+                bracket.pierce(bracket.low(), direction.length());
+                let (lower, upper) = bracket.bounds(Some(bracket.ray.lambda(bracket.low())));
+                assert!(lower <= known && known <= upper, "{known} is not in [{lower}, {upper}]");
+                assert!(upper - lower < 1e-13, "[{lower}, {upper}] about {known}");
+            });
+        }
+    }
+
+    /// The ray passes over the top at y = 3/2, and one within rounding of the top may touch it.
+    #[test]
+    fn a_plane_before_the_rest_of_the_ray_proves_a_miss_and_one_within_rounding_does_not() {
+        for (y, misses) in [(1.5, true), (1.0 + 1e-12, true), (1.0_f64.next_up(), false), (1.0, false), (0.5, false)] {
+            let found = at_cube((DVec3::new(-3.0, y, 0.0), DVec3::X), f64::INFINITY, |bracket| {
+                bracket.advance(DVec3::Y, DVec3::ONE)
+            });
+            assert_eq!(matches!(found, Err(Stop::Miss(DVec3::Y))), misses, "{y}");
+        }
+    }
+
+    /// The face is at λ = 2.
+    #[test]
+    fn a_ray_that_ends_before_a_plane_misses_unless_rounding_decides() {
+        for (end, misses) in [(1.75, true), (2.0 - 1e-12, true), (2.0_f64.next_down(), false), (2.0, false)] {
+            let found = at_cube(AT_FACE, end, |bracket| bracket.advance(DVec3::NEG_X, CORNER));
+            assert_eq!(matches!(found, Err(Stop::Miss(DVec3::NEG_X))), misses, "{end}");
+        }
+    }
+
+    /// Such a plane would be crossed at x = 2⁹⁰⁸, where the cube has no points, and rounding leaves open where: it is no
+    /// bound.
+    #[test]
+    fn a_plane_along_the_ray_is_crossed_within_the_ball_about_the_body() {
+        let n = DVec3::new(-(2.0_f64.powi(-960)), 1.0, 0.0);
+        at_cube((DVec3::new(-3.0, 1.0_f64.next_up(), 0.0), DVec3::X), f64::INFINITY, |bracket| {
+            let crossing = bracket.crossing(n, CORNER).expect("the plane may touch the ray, to rounding");
+            assert_eq!(crossing.map(|crossing| crossing.bound.at), Some(bracket.end()));
+            let before = bracket.low();
+            bracket.advance(n, CORNER).expect("the same");
+            assert_eq!((bracket.low(), bracket.end()), (before, -before));
+        });
+    }
+
+    #[test]
+    fn a_ray_that_misses_the_ball_about_the_body_takes_no_support_point() {
+        let start = |x: f64, y: f64| (DVec3::new(x, y, 0.0), DVec3::X);
+        for (ray, end, axis) in [
+            (start(-3.0, 2.0), f64::INFINITY, DVec3::Y),
+            (start(2.0, 0.0), f64::INFINITY, DVec3::X),
+            (start(-3.0, 0.0), 1.0, DVec3::NEG_X),
+        ] {
+            at_cube(ray, end, |bracket| {
+                assert!(matches!(bracket.enter_ball(), Err(Stop::Miss(n)) if n == axis), "{ray:?} {end}");
+                assert_eq!(bracket.iterations, 0);
+            });
+        }
+        at_cube(AT_FACE, f64::INFINITY, |bracket| assert!(bracket.enter_ball().is_ok()));
+    }
+
+    /// The ray at y = 5/4 crosses the plane across (−1, 1, 0) at x = −3/4, and leaves the one across (1/8, 1, 0), which
+    /// it is before from there on. Neither plane is before the whole line; y = 1 is.
+    #[test]
+    fn two_planes_that_are_before_parts_of_a_ray_make_one_before_all_of_it() {
+        at_cube((DVec3::new(-3.0, 1.25, 0.0), DVec3::X), f64::INFINITY, |bracket| {
+            bracket.support(DVec3::NEG_X, DVec3::NEG_X, &[]).expect("a support point");
+            bracket.advance(DVec3::new(-1.0, 1.0, 0.0).normalize(), CORNER).expect("a plane that is crossed");
+            let Err(Stop::Miss(n)) = bracket.advance(DVec3::new(0.125, 1.0, 0.0).normalize(), DVec3::ONE) else {
+                panic!("the plane is before the rest of the ray");
+            };
+            assert!(bracket.axis_of_miss(n).distance(DVec3::Y) < 1e-15);
+        });
+    }
+
+    /// The tolerance is 1/1000, and the plane x = −1.
+    #[test]
+    fn a_bracket_closes_at_a_point_on_the_line_within_the_tolerance() {
+        let closes = |behind: f64, aside: f64| {
+            at_cube(AT_FACE, f64::INFINITY, |bracket| {
+                bracket.advance(DVec3::NEG_X, CORNER).expect("a plane that is crossed");
+                let (mu, noise) = (bracket.low() + behind, bracket.noise);
+                let point = bracket.line().at(mu) + DVec3::Y * (aside * noise);
+                let found = bracket.close(0.0, point, PointPair::default(), mu).ok();
+                found.inspect(|contact| assert_eq!((contact.mu, contact.normal), (-1.0, Some(DVec3::NEG_X)))).is_some()
+            })
+        };
+        assert!(closes(0.0, 0.0) && closes(0.9e-3, 0.0) && closes(0.0, 0.5));
+        assert!(!closes(1.1e-3, 0.0), "the point is too far behind the plane");
+        assert!(!closes(-1e-12, 0.0), "the point is before the plane");
+        assert!(!closes(0.0, 2.0), "the point is beside the line");
+    }
+
+    #[test]
+    fn an_entry_in_doubt_has_no_upper_bound_until_it_is_certain() {
+        at_cube(AT_FACE, f64::INFINITY, |bracket| {
+            bracket.advance(DVec3::NEG_X, CORNER).expect("a plane that is crossed");
+            bracket.enter_hull(-1.0, 0.0, 1.0);
+            assert!(bracket.is_entry_open(), "no ball rolls in a cube");
+            assert_eq!(bracket.bounds(Some(2.0)).1, f64::INFINITY);
+            bracket.enter_for_certain(-0.5);
+            bracket.doubt_entry();
+            assert_eq!(bracket.bounds(Some(2.0)).1, f64::INFINITY);
+            bracket.enter_for_certain(-0.5);
+            let (_, upper) = bracket.bounds(Some(2.0));
+            assert!((2.5..2.5 + 1e-14).contains(&upper), "{upper}");
+        });
+    }
 
     /// A ball about zero that knows its support points alone, so that every bound is a search's.
     struct Bare;

@@ -578,6 +578,9 @@ fn is_beyond<V: Vector>(corners: &[V], point: V) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use alloc::collections::BTreeSet;
+    use alloc::vec::Vec;
+
     use convex_support::glam::{DVec2, DVec3};
 
     use super::*;
@@ -635,5 +638,164 @@ mod tests {
                 assert_eq!(is_beyond(&corners, DVec3::new(at(i), at(j), 3.0)), i > j, "{i} {j} in space");
             }
         }
+    }
+
+    fn octahedron() -> Boundary<DVec3> {
+        let mut boundary = Boundary::new(f64::EPSILON);
+        assert!(boundary.begin(&[DVec3::X, DVec3::Y, DVec3::Z, -DVec3::ONE].map(vertex), 0.0));
+        for corner in [DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z].map(|corner| corner * 4.0) {
+            assert!(boundary.insert_anywhere(&vertex(corner)));
+        }
+        boundary
+    }
+
+    /// The facets that are left, by their corners and those across.
+    fn facets<V: Vector>(boundary: &Boundary<V>) -> Vec<(usize, [u16; MAX_CORNERS], [u16; MAX_CORNERS])> {
+        let is_left = |&i: &usize| boundary.inner[i].is_finite();
+        let facet = |i: usize| (i, boundary.facets[i].corners, boundary.facets[i].across);
+        (0..boundary.facets.len()).filter(is_left).map(facet).collect()
+    }
+
+    /// Points of whole coordinates in a cube, many of them in planes and on lines with others: each is in the hull of
+    /// what was kept, exactly; ridges are those of the facets across them; and by Euler's formula a polyhedron of
+    /// triangles has twice as many facets as vertices, less four.
+    #[test]
+    fn facets_are_a_closed_surface_around_all_points() {
+        let mut boundary = Boundary::new(f64::EPSILON);
+        let corners = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::ONE];
+        assert!(boundary.begin(&corners.map(vertex), 0.0));
+        let (mut state, mut points) = (1_u64, corners.to_vec());
+        for _ in 0..300 {
+            let mut coordinate = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                ((state >> 33) % 13) as f64 - 6.0
+            };
+            let point = DVec3::new(coordinate(), coordinate(), coordinate());
+            points.push(point);
+            let _ = boundary.insert_anywhere(&vertex(point));
+        }
+        let facets = facets(&boundary);
+        let used: BTreeSet<u16> = facets.iter().flat_map(|&(_, corners, _)| corners).collect();
+        assert_eq!((facets.len(), boundary.len()), (2 * used.len() - 4, facets.len()));
+        for &(index, corners, across) in &facets {
+            let at = boundary.corner_points(index);
+            assert!(points.iter().all(|&point| !is_beyond(&at, point)), "a point is beyond {at:?}");
+            for i in 0..3 {
+                let (from, to) = (corners[NEXT[i]], corners[NEXT[i + 1]]);
+                let other = &boundary.facets[usize::from(across[i])];
+                let back = (0..3).find(|&k| usize::from(other.across[k]) == index).expect("a facet across it");
+                assert_eq!([other.corners[NEXT[back + 1]], other.corners[NEXT[back]]], [from, to]);
+            }
+        }
+    }
+
+    /// Five corners and their quarter turns, all on the hull.
+    #[test]
+    fn a_polygon_has_an_edge_for_each_corner() {
+        let vertex = |point: DVec2| Vertex { point, along: point, pair: PointPair::default() };
+        let corners = [(0.0, 8.0), (1.0, 8.0), (4.0, 7.0), (7.0, 4.0), (8.0, 1.0)];
+        let all = (0..4).flat_map(|quarter| {
+            let turn = move |(x, y): (f64, f64)| [(x, y), (y, -x), (-x, -y), (-y, x)][quarter];
+            corners.map(|corner| DVec2::from(turn(corner)))
+        });
+        let mut boundary = Boundary::new(f64::EPSILON);
+        assert!(boundary.begin(&[DVec2::new(0.5, 0.5), DVec2::new(-1.0, 0.0), DVec2::new(0.0, -1.0)].map(vertex), 0.0));
+        let all: Vec<_> = all.collect();
+        for point in &all {
+            assert!(boundary.insert_anywhere(&vertex(*point)), "{point}");
+        }
+        assert_eq!(boundary.len(), all.len());
+        for (index, [from, to, _], [after, before, _]) in facets(&boundary) {
+            assert!(all.iter().all(|&point| !is_beyond(&boundary.corner_points(index)[..2], point)));
+            assert_eq!(boundary.facets[usize::from(after)].corners[0], to);
+            assert_eq!(boundary.facets[usize::from(before)].corners[1], from);
+        }
+        let (_, inner) = boundary.nearest();
+        assert!((inner - 11.0 / 2.0_f64.sqrt()).abs() < 1e-14, "the edge from (4, 7) to (7, 4): {inner}");
+    }
+
+    /// Of the corners ±4 and 1: the facet (1, 1, 1) is 1/√3 from zero, those with −4 are farther.
+    #[test]
+    fn the_nearest_facet_is_the_least_of_those_that_are_left() {
+        let mut boundary = octahedron();
+        let (index, inner) = boundary.nearest();
+        assert!((inner - 1.0 / 3.0_f64.sqrt()).abs() < 1e-15 && boundary.facet_at(index).normal.min_element() > 0.0);
+        for _ in 0..20 {
+            let all = facets(&boundary);
+            let (index, inner) = boundary.nearest();
+            assert!(all.iter().any(|&(facet, ..)| facet == index), "{index} is left");
+            assert!(all.iter().all(|&(facet, ..)| boundary.inner[facet] >= inner && boundary.inner[index] == inner));
+            let beyond = boundary.facet_at(index).normal * (inner + 0.125);
+            assert!(boundary.insert(index, &vertex(beyond)));
+        }
+    }
+
+    /// The octahedron with corners 1 and −4 is left along a vector through the facet of the same signs.
+    #[test]
+    fn a_ray_from_zero_leaves_through_the_facet_that_it_pierces() {
+        let boundary = octahedron();
+        let (nearest, _) = boundary.nearest();
+        for signs in (0..8).map(|bits| DVec3::from_array([1, 2, 4].map(|bit| if bits & bit == 0 { 1.0 } else { -1.0 })))
+        {
+            let u = (signs * DVec3::new(3.0, 1.0, 2.0)).normalize();
+            let at = boundary.corner_points(boundary.pierced(u, nearest));
+            assert!(at.iter().all(|corner| corner.dot(signs) > 0.0), "{u} leaves through {at:?}");
+        }
+    }
+
+    /// A facet at 1/√3 and others farther, by an error that is an eighth along one normal and more elsewhere.
+    #[test]
+    fn the_certain_ball_within_has_the_error_of_every_facet_taken_off() {
+        let boundary = octahedron();
+        let least = 1.0 / 3.0_f64.sqrt();
+        assert_eq!(boundary.certain_inner(|_| 0.0, 0.0), boundary.nearest().1);
+        let by = |error: fn(DVec3) -> f64| boundary.certain_inner(error, 1.0);
+        assert!((by(|_| 0.125) - (least - 0.125)).abs() < 1e-15);
+        // The facets with one corner at −4 are at 4/√33.
+        let known = 4.0 / 33.0_f64.sqrt() - 0.75;
+        assert!((by(|n| if n.min_element() < 0.0 { 0.75 } else { 0.0 }) - known).abs() < 1e-15);
+    }
+
+    /// Of a needle of a triangle, the plane has no digits: its corners are on one line to a rounding.
+    #[test]
+    fn a_sliver_is_as_far_as_its_nearest_point() {
+        let mut boundary = Boundary::new(f64::EPSILON);
+        let sliver =
+            [DVec3::new(-1.0, 0.0, 1.0), DVec3::new(1.0, 0.0, 1.0), DVec3::new(0.25, 2.0_f64.powi(-1000), 1.0)];
+        assert!(boundary.begin(&[sliver[0], sliver[1], sliver[2], DVec3::NEG_Z].map(vertex), 0.0));
+        let index =
+            (0..4).find(|&i| boundary.corner_points(i).iter().all(|corner| corner.z == 1.0)).expect("the sliver");
+        assert!(boundary.inner[index] < 0.75, "the direction of a corner bounds it: {}", boundary.inner[index]);
+        assert!(boundary.measure(index));
+        assert_eq!(boundary.inner[index], 1.0);
+        assert!(boundary.facet_at(index).normal.distance(DVec3::Z) < 1e-300);
+        assert!(!boundary.measure(index), "it cannot be better");
+    }
+
+    /// The corner of the unit cube is 1/√3 above the plane through its neighbours, 0.57735….
+    #[test]
+    fn a_simplex_as_thin_as_asked_is_none_and_leaves_nothing() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(vertex);
+        let mut boundary = Boundary::new(f64::EPSILON);
+        assert!(!boundary.begin(&corners, 0.5774));
+        assert_eq!(boundary.len(), 0);
+        assert!(boundary.begin(&corners, 0.5773));
+        assert_eq!(boundary.len(), 4);
+    }
+
+    /// What a thread keeps of a polytope that outgrew its room is empty for the next search.
+    #[test]
+    fn a_lent_polytope_knows_nothing_of_the_search_before() {
+        let grow = |boundary: &mut Boundary<DVec3>| {
+            assert_eq!((boundary.len(), boundary.vertices.len()), (0, 0));
+            assert!(boundary.begin(&[DVec3::X, DVec3::Y, DVec3::Z, -DVec3::ONE].map(vertex), 0.0));
+            for i in 0..=VERTICES {
+                let (sin, cos) = (i as f64).sin_cos();
+                assert!(boundary.insert_anywhere(&vertex(DVec3::new(4.0 * cos, 4.0 * sin, i as f64 / 16.0 + 1.0))));
+            }
+            assert!(boundary.vertices.len() > VERTICES);
+            boundary.nearest()
+        };
+        assert_eq!(Boundary::lend(f64::EPSILON, grow), Boundary::lend(f64::EPSILON, grow));
     }
 }

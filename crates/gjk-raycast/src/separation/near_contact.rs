@@ -452,14 +452,14 @@ impl<V: Vector> Known<V> {
 
 #[cfg(test)]
 mod tests {
-    use convex_support::glam::DVec3;
-    use convex_support::{Cuboid, Posed};
+    use convex_support::glam::{DQuat, DVec2, DVec3};
+    use convex_support::{Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed};
 
     use super::*;
 
     /// How wide a floor is has nothing to do with the gap above it: coordinates are counted along the normal alone.
     #[test]
-    fn a_gap_of_one_ulp_over_a_wide_floor_is_seen() -> Result<(), convex_support::InvalidShape> {
+    fn a_gap_of_one_ulp_over_a_wide_floor_is_seen() -> Built<()> {
         let floor = Cuboid::new(DVec3::new(1e6, 0.5, 1e6))?;
         let over = |height: f64| Posed::translated(Cuboid::new(DVec3::splat(0.5))?, DVec3::new(3.0, height, 0.0));
         for (height, overlap) in [(1.0_f64.next_up(), false), (1.0, true), (1.0_f64.next_down(), true)] {
@@ -471,6 +471,171 @@ mod tests {
                 assert!(lower <= gap && gap.max(0.0) <= upper, "{gap} is not in [{lower}, {upper}]");
             }
         }
+        Ok(())
+    }
+
+    type Built<S> = Result<S, InvalidShape>;
+
+    /// What two bodies are found to be in either order: the same but for the sign of the normal, and the gap within its
+    /// bounds.
+    fn agree<V: Vector<Scalar = f64>>(a: Shape<'_, V>, b: Shape<'_, V>, gap: f64) -> NearContact<V> {
+        let [near, reversed] = [near_contact_of(a, b, 200), near_contact_of(b, a, 200)].map(|near| near.expect("near"));
+        let bounds =
+            |near: &NearContact<V>| [near.gap, near.lower, near.upper, near.length].map(|x| x * near.frame.scale);
+        assert_eq!(bounds(&near), bounds(&reversed));
+        assert_eq!((near.normal, near.points.a), (-reversed.normal, reversed.points.b));
+        let [_, lower, upper, _] = bounds(&near);
+        assert!(lower <= gap && gap <= upper, "{gap} is not in [{lower}, {upper}]");
+        near
+    }
+
+    /// A few roundings of numbers about 1, more than the errors that the shapes below state.
+    const FEW: f64 = 32.0 * f64::EPSILON;
+
+    /// The gap of two balls of radius 1 is their distance less 2, which is exact.
+    #[test]
+    fn balls_a_few_roundings_apart_are_apart() -> Built<()> {
+        let ball = Ball::<DVec3>::new(1.0)?;
+        for (distance, overlap) in [(2.0 + FEW, false), (2.0, true), (2.0 - FEW, true)] {
+            let near = agree(&Posed::translated(ball, DVec3::Y * distance)?, &ball, distance - 2.0);
+            assert_eq!((near.overlap(), near.normal), (Some(overlap), DVec3::Y), "{distance}");
+        }
+        Ok(())
+    }
+
+    /// Numbers from 1/2 to 1 with all their digits.
+    fn numbers() -> impl Iterator<Item = f64> {
+        let mut state = 1_u64;
+        core::iter::repeat_with(move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            0.5 + (state >> 12) as f64 * 2.0_f64.powi(-53)
+        })
+    }
+
+    /// Balls and boxes one over the other, whose origins have a difference of more digits than a number: the gap is an
+    /// integer in units of 2⁻⁶⁰.
+    #[test]
+    fn bounds_hold_the_gap_of_bodies_whose_offset_rounds() -> Built<()> {
+        let mut numbers = numbers();
+        let mut number = |scale: f64| numbers.next().map_or(scale, |x| x * scale);
+        for i in 0..500 {
+            let (y, below, half) = (number(1.0), -number(0.125), number(0.25));
+            let other = (y - below - half) + f64::from(i % 9 - 4) * f64::EPSILON;
+            let whole = |x: f64| (x * 2.0_f64.powi(60)) as i128;
+            let gap = (whole(y) - whole(below) - whole(half) - whole(other)) as f64 * 2.0_f64.powi(-60);
+            let at = |y: f64| DVec3::new(0.25, y, 0.25);
+            agree(&Posed::translated(Ball::new(half)?, at(y))?, &Posed::translated(Ball::new(other)?, at(below))?, gap);
+            let cube = |half: f64| Cuboid::new(DVec3::splat(half));
+            agree(&Posed::translated(cube(half)?, at(y))?, &Posed::translated(cube(other)?, at(below))?, gap);
+        }
+        Ok(())
+    }
+
+    /// Along (1, 2, 2), which is 3 long, the distance of whole multiples is exact.
+    #[test]
+    fn bounds_hold_the_gap_of_balls_in_any_direction() -> Built<()> {
+        for (i, x) in (0_i32..500).zip(numbers()) {
+            let step = f64::from(1000 + 7 * i) / 1024.0;
+            let distance = 3.0 * step;
+            let (radius, other) = (distance * 0.5 * (1.0 + x / 4.0), f64::from(i % 9 - 4) * f64::EPSILON);
+            // Both differences are exact, of numbers within twice one another.
+            let rest = distance - radius + other;
+            let gap = (distance - radius) - rest;
+            agree(&Posed::translated(Ball::new(radius)?, DVec3::new(1.0, 2.0, 2.0) * step)?, &Ball::new(rest)?, gap);
+        }
+        Ok(())
+    }
+
+    /// An edge along x below one along z: no corner is nearest, and the gap is the difference of two heights.
+    #[test]
+    fn edges_that_cross_a_few_roundings_apart_are_apart() -> Built<()> {
+        let ridge = |along: DVec3, across: DVec3, top: f64, down: f64| {
+            let foot = DVec3::Y * (top + down);
+            Polytope::new([DVec3::Y * top + along, DVec3::Y * top - along, foot + across, foot - across])
+        };
+        let below = ridge(DVec3::X, DVec3::Z, 0.75, -1.0)?;
+        for (height, overlap) in [(0.75 + FEW, false), (0.75, true), (0.75 - FEW, true)] {
+            let above = ridge(DVec3::Z * 2.0, DVec3::X, height, 1.5)?;
+            let near = agree(&above, &below, height - 0.75);
+            assert_eq!(near.overlap(), Some(overlap), "{height}");
+            assert!(near.normal.distance(DVec3::Y) < 1e-15, "{}", near.normal);
+        }
+        Ok(())
+    }
+
+    fn octahedron() -> Built<Polytope<DVec3>> {
+        Polytope::new([DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]))
+    }
+
+    /// Points about the face x + y + z = 1, whose unit normal has no exact coordinates: they are in the
+    /// octahedron where the sum of theirs is at most 1.
+    #[test]
+    fn a_point_a_few_roundings_off_a_slanted_face_is_off_it() -> Built<()> {
+        let octahedron = octahedron()?;
+        for (i, j) in (1..4).flat_map(|i| (1..4).map(move |j| (i, j))) {
+            let (x, y) = (f64::from(i) / 16.0, f64::from(j) / 16.0);
+            let z = 1.0 - x - y;
+            for (z, is_in) in [(z + FEW, false), (z, true), (z - FEW, true)] {
+                let gap = (z - (1.0 - x - y)) / 3.0_f64.sqrt();
+                let near = agree(&Point::new(DVec3::new(x, y, z))?, &octahedron, gap);
+                assert_eq!(near.overlap(), Some(is_in), "{x} {y} {z}");
+                assert!(near.normal.distance(DVec3::ONE.normalize()) < 1e-15, "{}", near.normal);
+            }
+        }
+        Ok(())
+    }
+
+    /// Segments within a capsule's radius: the closest points are known in closed form, and nothing is searched.
+    #[test]
+    fn capsules_that_cross_are_measured_without_a_search() -> Built<()> {
+        let rod = Capsule::<DVec3>::new(4.0, 0.5)?;
+        let quarter = DQuat::from_xyzw(0.5_f64.sqrt(), 0.0, 0.0, 0.5_f64.sqrt());
+        let distance = 1.0 + 64.0 * f64::EPSILON;
+        let near = agree(&Posed::new(rod, quarter, DVec3::X * distance)?, &rod, distance - 1.0);
+        assert_eq!((near.overlap(), near.iterations), (Some(false), 1));
+        assert!(near.is_closed() && near.normal.distance(DVec3::X) < 1e-15, "{}", near.normal);
+        Ok(())
+    }
+
+    /// In the plane: a corner on the slanted side x + y = 1 of a square that stands on its corner.
+    #[test]
+    fn a_corner_a_few_roundings_off_a_slanted_side_is_off_it() -> Built<()> {
+        let standing = Polytope::new([DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y])?;
+        for (x, overlap) in [(0.625 + FEW, false), (0.625, true), (0.625 - FEW, true)] {
+            let square = Polytope::new(
+                [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(u, v)| DVec2::new(x + u, 0.375 + v)),
+            )?;
+            let near = agree(&square, &standing, (x - 0.625) / 2.0_f64.sqrt());
+            assert_eq!(near.overlap(), Some(overlap), "{x}");
+        }
+        Ok(())
+    }
+
+    /// No plane is between a body and a point well inside, and a simplex around zero proves it.
+    #[test]
+    fn bodies_that_overlap_by_more_than_rounding_certainly_do() -> Built<()> {
+        let octahedron = octahedron()?;
+        let near = agree(&Point::new(DVec3::new(0.25, 0.125, -0.0625))?, &octahedron, -0.5625 / 3.0_f64.sqrt());
+        assert!(near.overlaps_certainly && near.is_settled() && near.overlap() == Some(true));
+        assert_eq!((near.lower, near.upper), (f64::NEG_INFINITY, 0.0));
+        Ok(())
+    }
+
+    /// A gap of few ulps, by any unit of length, and of numbers whose errors are out of range none.
+    #[test]
+    fn a_power_of_two_changes_no_mantissa_and_numbers_out_of_range_have_no_answer() -> Built<()> {
+        let measured = |scale: f64| -> Built<_> {
+            let cube = Cuboid::new(DVec3::splat(0.7 * scale))?;
+            let near =
+                near_contact_of(&Posed::translated(cube, DVec3::new(0.3, -0.2, 1.4).map(|x| x * scale))?, &cube, 200);
+            Ok(near.map(|near| [near.gap, near.lower, near.upper].map(|x| x * (near.frame.scale / scale))))
+        };
+        let known = measured(1.0)?;
+        assert!(known.is_some());
+        for power in [-400, 400] {
+            assert_eq!(measured(2.0_f64.powi(power))?, known);
+        }
+        assert_eq!(measured(2.0_f64.powi(1023))?, None);
         Ok(())
     }
 }

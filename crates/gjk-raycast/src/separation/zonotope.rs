@@ -385,7 +385,7 @@ fn exact_cross(a: &Vec3, b: &Vec3) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
-    use convex_support::glam::DVec3;
+    use convex_support::glam::{DVec2, DVec3};
 
     use super::*;
 
@@ -410,5 +410,142 @@ mod tests {
         let cubes = [cube(1.0), cube(0.5)];
         assert!(Zonotope::new(&cubes, DVec3::Z * 1.5, 1.0).nearest_facet::<DVec3>().is_none());
         assert!(Zonotope::new(&cubes, DVec3::Z * 1.75, 1.0).is_beyond(DVec3::Z));
+        assert!(!Zonotope::new(&cubes, DVec3::Z * 1.5, 1.0).is_beyond(DVec3::Z));
+    }
+
+    /// Half edges turned by 45° about z.
+    fn turned(half: f64) -> Parallelotope<DVec3> {
+        let side = half * 0.5_f64.sqrt();
+        let half_edges = [DVec3::new(side, side, 0.0), DVec3::new(-side, side, 0.0), DVec3::Z * half];
+        Parallelotope { center: DVec3::ZERO, half_edges }
+    }
+
+    /// Along x the turned cube reaches √2 and the other 1, of which the offset takes its part off.
+    #[test]
+    fn a_cube_on_its_edge_leaves_across_the_edge() {
+        for offset in [0.5, 0.75, 1.0, 2.0] {
+            let cubes = [cube(1.0), turned(1.0)];
+            let nearest = Zonotope::new(&cubes, DVec3::X * offset, 1.0).nearest_facet::<DVec3>().expect("inside");
+            let known = 1.0 + 2.0_f64.sqrt() - offset;
+            assert!(nearest.inner <= known && known <= nearest.outer, "{known}: {} {}", nearest.inner, nearest.outer);
+            assert!(nearest.outer - nearest.inner < 1e-13, "{} {}", nearest.inner, nearest.outer);
+            assert!(nearest.unit::<DVec3>().distance(DVec3::NEG_X) < 1e-15);
+        }
+    }
+
+    /// A face of both cubes, whose edges are along one another: of many points at zero's projection, any in both cubes
+    /// will do.
+    #[test]
+    fn the_points_of_parallel_faces_lie_in_both_cubes() {
+        for (i, j) in (-5..=5).flat_map(|i| (-5..=5).map(move |j| (f64::from(i) / 4.0, f64::from(j) / 4.0))) {
+            let (cubes, offset) = ([cube(1.0), cube(0.5)], DVec3::new(i, j, -1.375));
+            let nearest = Zonotope::new(&cubes, offset, 1.0).nearest_facet::<DVec3>().expect("inside");
+            let points = nearest.points(&cubes, offset, 1.0);
+            assert!(points.a.abs().max_element() <= 1.0 + 1e-15 && points.b.abs().max_element() <= 0.5 + 1e-15);
+            let apart = points.a - points.b + offset;
+            assert!(apart.distance(nearest.unit::<DVec3>() * nearest.depth) < 1e-15, "{apart}");
+        }
+    }
+
+    /// The edges of a turned square are along no others, so that its facets have four edges in one plane, in pairs that
+    /// cross at 45°.
+    #[test]
+    fn the_points_of_faces_turned_in_their_plane_lie_in_both_cubes() {
+        for (i, j) in (-5..=5).flat_map(|i| (-5..=5).map(move |j| (f64::from(i) / 4.0, f64::from(j) / 4.0))) {
+            let (cubes, offset) = ([cube(1.0), turned(0.5)], DVec3::new(i, j, 1.375));
+            let nearest = Zonotope::new(&cubes, offset, 1.0).nearest_facet::<DVec3>();
+            let Some(nearest) = nearest.filter(|nearest| nearest.unit::<DVec3>() == DVec3::NEG_Z) else { continue };
+            assert!((nearest.depth - 0.125).abs() < 1e-15);
+            let points = nearest.points(&cubes, offset, 1.0);
+            let [x, y] = [points.b.x + points.b.y, points.b.x - points.b.y].map(|along| (along * 0.5_f64.sqrt()).abs());
+            assert!(points.a.abs().max_element() <= 1.0 + 1e-15 && x.max(y).max(points.b.z.abs()) <= 0.5 + 1e-15);
+            assert!((points.a - points.b + offset).distance(DVec3::NEG_Z * 0.125) < 1e-15);
+        }
+    }
+
+    /// A segment has one edge, and a point none; the others have no length. The segment through (0, 0, −1/2) along
+    /// (12, 0, 1) leaves across itself, over the edge at (1, −1): its line is (1 + 12 − 6)/√145 from there.
+    #[test]
+    fn a_segment_and_a_point_leave_a_cube_over_an_edge_and_through_a_side() {
+        let none = DVec3::ZERO;
+        let segment = Parallelotope { center: none, half_edges: [DVec3::new(3.0, 0.0, 0.25), none, none] };
+        for (inside, known, normal) in [
+            (Parallelotope::point(none), 0.5, DVec3::NEG_Z),
+            (segment, 7.0 / 145.0_f64.sqrt(), DVec3::new(1.0, 0.0, -12.0).normalize()),
+        ] {
+            let cubes = [cube(1.0), inside];
+            let nearest = Zonotope::new(&cubes, DVec3::Z * 0.5, 1.0).nearest_facet::<DVec3>().expect("inside");
+            assert!(nearest.inner <= known && known <= nearest.outer && nearest.outer - nearest.inner < 1e-13);
+            assert!(nearest.unit::<DVec3>().distance(normal) < 1e-15);
+        }
+        let segments = Zonotope::new(&[segment, segment], none, 1.0);
+        assert!(segments.nearest_facet::<DVec3>().is_none(), "their difference has no inside");
+    }
+
+    /// In the plane a facet has one edge and its parallels: the unit square, and one on its corner at (0, 2 + 1/4), whose
+    /// lowest corner is √2 below.
+    #[test]
+    fn a_square_on_its_corner_leaves_a_square_upward() {
+        let square = Parallelotope { center: DVec2::ZERO, half_edges: [DVec2::X, DVec2::Y, DVec2::ZERO] };
+        let side = 0.5_f64.sqrt();
+        let turned = Parallelotope {
+            center: DVec2::new(0.125, 2.25),
+            half_edges: [DVec2::new(side, side), DVec2::new(-side, side), DVec2::ZERO],
+        };
+        let nearest = Zonotope::new(&[square, turned], DVec2::ZERO, 1.0).nearest_facet::<DVec2>().expect("inside");
+        let known = 1.0 - (2.25 - 2.0_f64.sqrt());
+        assert!(nearest.inner <= known && known <= nearest.outer && nearest.outer - nearest.inner < 1e-14);
+        let points = nearest.points(&[square, turned], DVec2::ZERO, 1.0);
+        assert!(points.b.distance(DVec2::new(0.125, 1.0 - known)) < 1e-14, "its lowest corner: {}", points.b);
+        assert!(points.a.distance(DVec2::new(0.125, 1.0)) < 1e-14, "the point above it: {}", points.a);
+    }
+
+    /// Their edges are along one another, and one of them the other way.
+    #[test]
+    fn the_points_of_parallel_sides_lie_in_both_squares() {
+        let square = |x: DVec2| Parallelotope { center: DVec2::ZERO, half_edges: [x, DVec2::Y, DVec2::ZERO] };
+        for x in (-11..=11).map(|i| f64::from(i) / 8.0) {
+            let (squares, offset) = ([square(DVec2::X), square(DVec2::NEG_X * 0.5)], DVec2::new(x, -1.875));
+            let nearest = Zonotope::new(&squares, offset, 1.0).nearest_facet::<DVec2>().expect("inside");
+            assert_eq!((nearest.depth, nearest.unit::<DVec2>()), (0.125, DVec2::Y));
+            let points = nearest.points(&squares, offset, 1.0);
+            assert!(points.a.x.abs() <= 1.0 + 1e-15 && points.b.x.abs() <= 0.5 + 1e-15, "{points:?}");
+            assert!((points.a - points.b + offset).distance(nearest.unit::<DVec2>() * nearest.depth) < 1e-15);
+        }
+    }
+
+    /// The bounds and the answer scale with the unit, to the bit.
+    #[test]
+    fn a_power_of_two_changes_no_mantissa() {
+        let answer = |scale: f64| {
+            let scaled = |cube: Parallelotope<DVec3>| Parallelotope {
+                half_edges: cube.half_edges.map(|edge| edge * scale),
+                ..cube
+            };
+            let cubes = [scaled(cube(0.7)), scaled(turned(1.1))];
+            let offset = DVec3::new(0.3, -0.4, 0.9);
+            let nearest = Zonotope::new(&cubes, offset, scale.recip()).nearest_facet::<DVec3>().expect("inside");
+            (nearest.depth, nearest.inner, nearest.outer, nearest.normal)
+        };
+        assert_eq!(answer(1.0), answer(2.0_f64.powi(-500)));
+        assert_eq!(answer(1.0), answer(2.0_f64.powi(500)));
+    }
+
+    /// Edges nearly along one another, of whole coordinates up to 2⁴⁰: all products are exact as integers.
+    #[test]
+    fn the_product_of_nearly_parallel_edges_has_all_its_digits() {
+        let big = 1_i64 << 40;
+        for (a, b) in [([big + 1, big, 3], [big, big - 1, 7]), ([big - 5, 11, big], [big - 7, 13, big + 2])] {
+            let [e, f] = [a, b].map(|edge| edge.map(|x| x as f64));
+            let minor = |i: usize, j: usize| i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i]);
+            let known = [minor(1, 2), minor(2, 0), minor(0, 1)].map(|x| x as f64);
+            assert_eq!(exact_cross(&e, &f), known);
+            let EdgeSpan::ZonotopeFacet(normal) = span(&e, &f, dot(e, e), dot(f, f)) else {
+                panic!("they span a plane")
+            };
+            assert!((0..3).all(|i| (normal[i] * length(known) - known[i]).abs() <= 4.0 * f64::EPSILON * length(known)));
+        }
+        let edge = [1.0, 2.0, 3.0];
+        assert!(matches!(span(&edge, &edge.map(|x| 4.0 * x), 14.0, 224.0), EdgeSpan::Parallel(0.0)));
     }
 }

@@ -325,3 +325,168 @@ fn support_across<V: Vector>(
     }
     Err(Stop::InDoubt)
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::Polytope;
+    use convex_support::glam::DVec3;
+
+    use super::*;
+    use crate::RayCastOptions;
+    use crate::cast::bracket::tests::bracketed;
+    use crate::cast::line::Line;
+
+    /// The frame of a ray along −z: a point's coordinates are `u = x`, `v = −y`, `t = −z`.
+    fn frame() -> RayFrame<DVec3> {
+        RayFrame::new(Line { foot: DVec3::ZERO, direction: DVec3::NEG_Z })
+    }
+
+    fn seen(point: DVec3) -> RayPoint<DVec3> {
+        frame().see(point, point, PointPair { a: point, b: DVec3::ZERO })
+    }
+
+    fn triangle_of(corners: [RayPoint<DVec3>; 3]) -> Triangle<DVec3> {
+        let [p, q, s] = &corners;
+        let turn = 1.0_f64.copysign(p.edge_to(q).0.0 * p.edge_to(s).0.1 - p.edge_to(q).0.1 * p.edge_to(s).0.0);
+        let weights = [q.cross(s) * turn, s.cross(p) * turn, p.cross(q) * turn];
+        Triangle { corners, weights, turn }
+    }
+
+    /// Triangles around zero of either orientation, and points on a grid, also on lines through zero and the corners:
+    /// all products are whole numbers.
+    #[test]
+    fn an_exchange_leaves_zero_inside() {
+        let corners = [DVec3::new(4.0, -3.0, 0.0), DVec3::new(-5.0, -2.0, 1.0), DVec3::new(1.0, 6.0, 2.0)].map(seen);
+        let [p, q, s] = corners;
+        for corners in [[p, q, s], [q, p, s]] {
+            for (x, y) in (-8..=8).flat_map(|x| (-8..=8).map(move |y| (f64::from(x), f64::from(y)))) {
+                let mut portal = triangle_of(corners);
+                assert!(portal.weights.iter().all(|&weight| weight > 0.0));
+                let r = seen(DVec3::new(x, y, 3.0));
+                portal.exchange(r).expect("one of the three triangles");
+                assert!(portal.weights.iter().all(|&weight| weight >= 0.0), "{x} {y}: {:?}", portal.weights);
+                assert!(portal.corners.iter().any(|corner| corner.point == r.point), "{x} {y}");
+                let known = triangle_of(portal.corners);
+                if known.weights != [0.0; 3] {
+                    assert_eq!((portal.weights, portal.turn), (known.weights, known.turn), "{x} {y}");
+                }
+            }
+        }
+    }
+
+    /// The plane z = 3 + x/2 − y/4, which the ray crosses at t = −3.
+    #[test]
+    fn the_plane_of_a_portal_runs_through_its_corners() {
+        let [p, q, s] =
+            [(4.0, -3.0), (-5.0, -2.0), (1.0, 6.0)].map(|(x, y)| seen(DVec3::new(x, y, 3.0 + x / 2.0 - y / 4.0)));
+        for corners in [[p, q, s], [q, p, s]] {
+            let portal = triangle_of(corners);
+            let plane = portal.plane(portal.weights.iter().sum());
+            assert!(plane.c > 0.0, "its normal is against the ray");
+            let alpha = plane.alpha();
+            assert_eq!(corners.map(|corner| alpha.tau(&corner)), [-3.0; 3]);
+            let OnLine { corners: [p, q, s], .. } = portal.anticlockwise(portal.weights, 0.0);
+            assert!(triangle_of([p, q, s]).turn > 0.0);
+        }
+    }
+
+    /// An edge of one shape along x and one of the other along y: the line runs through the parallelogram of the
+    /// differences of their ends, here in the triangle with the corner (−1, −1).
+    #[test]
+    fn where_two_edges_cross_the_mixed_point_makes_a_portal() {
+        let pair = |a: f64, b: f64| {
+            let witness = PointPair { a: DVec3::new(a, 0.0, 1.0), b: DVec3::new(0.0, b, 0.0) };
+            let point = witness.a - witness.b;
+            frame().see(point, point, witness)
+        };
+        let (p, q) = (pair(-1.0, -1.0), pair(3.0, 1.0));
+        let found = mixed(&frame(), &p, &q).expect("zero is in the triangle");
+        assert_eq!(
+            found.corners.map(|corner| corner.point),
+            [(-1.0, -1.0), (-1.0, 1.0), (3.0, -1.0)].map(|(x, y)| DVec3::new(x, y, 1.0))
+        );
+        assert_eq!((found.weights, found.turn), (triangle_of(found.corners).weights, triangle_of(found.corners).turn));
+        assert!(found.weights.iter().all(|&weight| weight > 0.0));
+        assert!(mixed(&frame(), &p, &pair(3.0, -0.5)).is_none(), "the line is beside the parallelogram");
+        assert!(mixed(&RayFrame { radius: 0.25, ..frame() }, &p, &q).is_none(), "a radius is not in the witness");
+    }
+
+    fn octahedron() -> Polytope<DVec3> {
+        Polytope::new([DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis])).expect("an octahedron")
+    }
+
+    /// A search from the tangent plane of the ball, as [`super::super::portal`] begins it.
+    fn search<R>(
+        ray: (DVec3, DVec3),
+        ask: impl FnOnce(&Bracket<'_, DVec3>, Result<RayContact<DVec3>, Stop<DVec3>>) -> R,
+    ) -> R {
+        bracketed(&octahedron(), ray, RayCastOptions::default(), |bracket| {
+            let (frame, first) = (RayFrame::new(bracket.line()), bracket.x());
+            let found = triangle(bracket, &frame, first, None, 1.0);
+            ask(bracket, found)
+        })
+    }
+
+    /// Points of the face −x + y − z = 1 of the octahedron, of few bits, and rays at them from there back by four times
+    /// their direction: each enters at λ = 4 exactly.
+    #[test]
+    fn a_ray_into_a_face_has_both_bounds_at_its_plane() {
+        let directions =
+            [DVec3::X, DVec3::new(3.0, 1.0, 1.0), DVec3::new(16.0, 31.0, 16.0), DVec3::new(-7.0, -3.0, 5.0)];
+        for (i, j) in (1..16).flat_map(|i| (1..16 - i).map(move |j| (i, j))) {
+            let (y, z) = (f64::from(i) / 16.0, -f64::from(j) / 16.0);
+            let (hit, direction) = (DVec3::new(y - z - 1.0, y, z), directions[(i + j) as usize % 4]);
+            search((hit - direction * 4.0, direction), |bracket, found| {
+                let contact = found.expect("a contact");
+                let (lower, upper) = bracket.bounds(Some(bracket.ray.lambda(contact.mu)));
+                assert!(lower <= 4.0 && 4.0 <= upper && upper - lower < 1e-13, "4 is not in [{lower}, {upper}]");
+                let normal = contact.normal.expect("a normal");
+                let depth = (upper - 4.0) * -normal.dot(direction);
+                assert!(depth >= bracket.error, "there it is {depth} deep, and the face known to {}", bracket.error);
+                assert!(normal.distance(DVec3::new(-1.0, 1.0, -1.0).normalize()) < 1e-15, "{normal}");
+                assert!(contact.witness.a.distance(hit) < 1e-13, "{} is not {hit}", contact.witness.a);
+                assert!(!bracket.is_entry_open() && bracket.around.is_some(), "three corners surround the line");
+            });
+        }
+    }
+
+    /// An edge and a corner are met by no more than two of the corners.
+    #[test]
+    fn a_ray_at_an_edge_or_a_corner_leaves_its_upper_bound_to_others() {
+        for (y, z) in [(0.0, 0.0), (0.5, 0.0), (0.0, -0.25)] {
+            search((DVec3::new(-4.0, y, z), DVec3::X), |bracket, found| {
+                let contact = found.expect("a contact");
+                let (known, (lower, _)) = (3.0 + y - z, bracket.bounds(Some(bracket.ray.lambda(contact.mu))));
+                assert!(lower <= known && known - lower < 1e-13, "{known} {lower}");
+                assert!(bracket.is_entry_open(), "{y} {z}");
+            });
+        }
+    }
+
+    /// Rays beside the octahedron, but within the ball about it: the plane has all corners behind it, and the ray before
+    /// it.
+    #[test]
+    fn a_ray_beside_the_body_ends_at_a_plane_that_separates() {
+        for (y, z) in [(0.5, 0.75), (-0.625, 0.5), (0.5, 0.53125), (0.75, -0.625)] {
+            search((DVec3::new(-4.0, y, z), DVec3::X), |bracket, found| {
+                let Err(Stop::Miss(n)) = found else { panic!("{y} {z} is not seen to miss") };
+                let axis = bracket.axis_of_miss(n);
+                assert!(axis.x.abs() < 1e-15 && axis.dot(DVec3::new(0.0, y, z)) > axis.abs().max_element(), "{axis}");
+            });
+        }
+    }
+
+    /// Along the edge between the corners on y and z, and one ulp beside it.
+    #[test]
+    fn a_line_that_touches_an_edge_to_rounding_is_to_be_moved_inward() {
+        for z in [0.5, 0.5_f64.next_up()] {
+            search((DVec3::new(-4.0, 0.5, z), DVec3::X), |bracket, found| {
+                let Err(Stop::Touches(inward)) = found else { panic!("{z} is not seen to touch") };
+                assert!(
+                    inward.x == 0.0 && inward.dot(DVec3::ONE) < 0.0 && inward.length() <= bracket.noise,
+                    "{inward}"
+                );
+            });
+        }
+    }
+}
