@@ -2,19 +2,23 @@
 
 use convex_support::numerics::bound::{raised, roundings};
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Core, CoreKind, Hint, Posed, Scalar, SupportMap, Vector, compiled_once};
+use convex_support::{Core, CoreKind, Hint, Posed, Scalar, SupportMap, Vector, compiled_once, compiled_table};
 use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
-use crate::cast::{CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, cast, certain_closely, settle_ends};
+use crate::cast::{
+    CastHit, CastRay, ObstacleCast, Part, RareInRayCasts, RayBodies, cast, certain_closely, settle_ends,
+};
 use crate::distance::distance_of_any;
-use crate::extra::in_static;
 use crate::observer::Observer;
+use crate::options::{MAX_ITERATIONS, MayBeLean, Rare, options};
+use crate::outcome::{check_finite, check_limits};
 use crate::shape::{Shape, WithoutLines};
 use crate::signed_distance::signed_distance_of_any;
 use crate::{
-    DistanceOptions, HalfSpace, Impact, Iterate, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCast,
-    RayCastError, RayCastOptions, SignedDistance, SignedDistanceOptions, StartInContact, Status, WarmStart,
+    Cast, CastMethod, DistanceOptions, HalfSpace, Impact, Iterate, Miss, Outcome, Ray, RayCast, RayCastError,
+    RayCastOptions, RigidMotion, SignedDistance, SignedDistanceOptions, StartInContact, Status, SubAlgorithm,
+    WarmStart,
 };
 
 /// Shapes may be in contact if they are apart by so many ε of their sizes and of their distance from the origin, and so
@@ -104,6 +108,116 @@ where
     watched(a, b, motion, options, &mut Observer::new(&mut observer))
 }
 
+/// The velocities of two shapes, in units of length per unit of time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Motion<V> {
+    /// The velocity of `a`.
+    pub velocity_a: V,
+    /// The velocity of `b`.
+    pub velocity_b: V,
+}
+
+impl<V: Vector> Motion<V> {
+    /// The motions of both bodies.
+    #[must_use]
+    pub fn translations(self) -> [RigidMotion<V>; 2] {
+        [self.velocity_a, self.velocity_b].map(RigidMotion::translation)
+    }
+
+    /// The error of a motion that is invalid, or cannot be cast with these options.
+    pub(crate) fn check(&self, options: &LinearCastOptions<V>) -> Result<(), RayCastError> {
+        check_finite("velocity_a", self.velocity_a)?;
+        check_finite("velocity_b", self.velocity_b)?;
+        check_limits(options.max_time, options.target_distance)
+    }
+}
+
+/// Options of [`linear_cast`](crate::linear_cast).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct LinearCastOptions<V: Vector> {
+    /// The end of the motion; it belongs to the motion. If the motion ends at the first contact, to rounding, neither a
+    /// hit nor a miss is certain. If it is negative, the motion has no time, and the answer is a miss. Default:
+    /// infinity.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub max_time: V::Scalar,
+    /// The distance at which the shapes count as touching: the cast stops that far from contact. A negative value is
+    /// taken for zero. Default: 0.
+    pub target_distance: V::Scalar,
+    /// What to answer if the shapes touch at the start. To step a world from contact to contact, take
+    /// [`StartInContact::IfDeeper`]. Default: [`StartInContact::Report`].
+    pub start_in_contact: StartInContact,
+    /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
+    /// of rounding always ends the iteration. A negative value and NaN are taken for zero. Default: 0.
+    pub tolerance: V::Scalar,
+    /// The iterations after which to give up, those of repeated searches included. Only the depths that
+    /// [`StartInContact::IfDeeper`] looks at may take as many each. Default: 200.
+    pub max_iterations: usize,
+    /// The warm start from the last frame's answer, which predicts the direction from `b` to `a` at contact. Default:
+    /// none.
+    pub warm_start: Option<WarmStart<V>>,
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
+    pub sub_algorithm: SubAlgorithm,
+    /// How planes are found. Default: [`CastMethod::Portal`].
+    pub method: CastMethod,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) rare: Rare<Self>,
+}
+
+impl<V: Vector> Default for LinearCastOptions<V> {
+    fn default() -> Self {
+        Self { rare: Self::rare(), ..Self::lean() }
+    }
+}
+
+impl<V: Vector> LinearCastOptions<V> {
+    /// The default options, with no machine code besides Algorithm 3 and the closed forms for points and balls: a
+    /// program in which all options are lean has three tenths of the code for linear casts.
+    ///
+    /// The faster search of [`CastMethod::Portal`] is left out, as in [`RayCastOptions::lean`], and so are all
+    /// measurements at the start besides the cast itself. If shapes touch or overlap there, the hit has a point of
+    /// both, but no normal. It is certain only if the search happens to end with points of both around the start. With
+    /// [`StartInContact::IfDeeper`] shapes that may be in contact at the start are
+    /// [undecided](crate::Outcome::Undecided).
+    #[must_use]
+    pub fn lean() -> Self {
+        Self {
+            max_time: V::Scalar::infinity(),
+            target_distance: V::Scalar::ZERO,
+            start_in_contact: StartInContact::Report,
+            tolerance: V::Scalar::ZERO,
+            max_iterations: MAX_ITERATIONS,
+            warm_start: None,
+            sub_algorithm: SubAlgorithm::Regions,
+            method: CastMethod::Portal,
+            rare: Rare(None),
+        }
+    }
+}
+
+options! {
+    LinearCastOptions: with_max_time(max_time: V::Scalar), with_target_distance(target_distance: V::Scalar),
+    with_start_in_contact(start_in_contact: StartInContact), with_tolerance(tolerance: V::Scalar),
+    with_max_iterations(max_iterations: usize), with_warm_start(warm_start: Option<WarmStart<V>>),
+    with_axis(axis: V => warm_start = Some(WarmStart::new(axis))), with_sub_algorithm(sub_algorithm: SubAlgorithm),
+    with_method(method: CastMethod)
+}
+
+/// The answer of [`linear_cast`](crate::linear_cast).
+pub type LinearCast<V> = Cast<Impact<V>, V>;
+
+impl<V: Vector> LinearCast<V> {
+    /// The warm start for the [cast of the next frame](crate::LinearCastOptions::warm_start), from this answer and its
+    /// own warm start.
+    #[must_use]
+    pub fn warm_start(&self, before: Option<WarmStart<V>>) -> Option<WarmStart<V>> {
+        self.outcome.warm_start(before, |hit| hit.normal)
+    }
+}
+
 #[inline(always)]
 fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     a: &A,
@@ -132,23 +246,29 @@ pub(crate) fn as_body<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> 
     search(&mut body, shapes.each(), &cores)
 }
 
-/// The functions that measure shapes in contact at the start, in addition to the cast itself.
+/// What a lean linear cast leaves out: what a ray cast does, and the measurements of shapes in contact at the start.
 #[allow(clippy::type_complexity, reason = "the type is written once")]
-pub(crate) struct AtStart<V: Vector> {
-    rays: &'static Quicker<V>,
+pub(crate) struct RareInLinearCasts<V: Vector> {
+    in_ray_casts: &'static RareInRayCasts<V>,
     touch: fn(&StartingPair<'_, V>, &mut LinearCast<V>, &LinearCastOptions<V>),
     of_motion: fn(&StartingPair<'_, V>, &mut LinearCast<V>, Motion<V>, &LinearCastOptions<V>) -> Option<Later<V>>,
 }
 
-impl<V: Vector> AtStart<V> {
-    pub(crate) const TABLE: Self = Self {
-        rays: &Quicker::TABLE,
+impl<V: Vector> RareInLinearCasts<V> {
+    const TABLE: Self = Self {
+        in_ray_casts: &RareInRayCasts::TABLE,
         touch: |start, answer, options| start.touch(answer, options),
         of_motion: |start, answer, motion, options| start.of_motion(answer, motion, options),
     };
 }
 
-in_static!(AtStart);
+impl<V: Vector> MayBeLean for LinearCastOptions<V> {
+    type Table = RareInLinearCasts<V>;
+
+    fn rare() -> Rare<Self> {
+        Rare(Some(compiled_table!(RareInLinearCasts<V>)))
+    }
+}
 
 compiled_once! {
     /// The cast by a search, for a pair of shapes with these cores.
@@ -167,7 +287,7 @@ compiled_once! {
         let is_point = |core: &Core<V>| matches!(core.kind, CoreKind::Point(_));
         let known = || certain_closely(body, ray, direction_error, &wanted, observer);
         // Where bodies begin in contact, only a search or a further look has a point of both.
-        let is_told = |known: &RayCast<V>| known.upper > <V::Scalar as Scalar>::ZERO || options.extra.get().is_some();
+        let is_told = |known: &RayCast<V>| known.upper > <V::Scalar as Scalar>::ZERO || options.rare.0.is_some();
         let mut cast = match cores.iter().any(is_point).then(known).flatten().filter(is_told) {
             Some(known) => ObstacleCast::of_certain(&known, body, ray),
             None => cast(body, whole, &wanted, observer),
@@ -200,9 +320,9 @@ fn answer<V: Vector>(
     if let Outcome::Hit(Impact { time, normal: None, .. }) = answer.outcome
         && time == zero
         && options.start_in_contact == StartInContact::Report
-        && let Some(extra) = options.extra.get()
+        && let Some(rare) = options.rare.0
     {
-        (extra.touch)(&start, &mut answer, options);
+        (rare.touch)(&start, &mut answer, options);
     }
     if options.start_in_contact == StartInContact::IfDeeper {
         let [core_a, core_b] = cores;
@@ -226,15 +346,13 @@ fn ray_of<V: Vector>(
     options: &LinearCastOptions<V>,
 ) -> (CastRay<V>, RayCastOptions<V>) {
     let zero = V::Scalar::ZERO;
-    let mut wanted = RayCastOptions::lean()
-        .with_max_lambda(options.max_time)
-        .with_tolerance(options.tolerance)
-        .with_max_iterations(options.max_iterations)
-        .with_sub_algorithm(options.sub_algorithm)
-        .with_method(options.method);
+    let &LinearCastOptions { max_time, tolerance, max_iterations, sub_algorithm, method, .. } = options;
     // Seen from b, a is at the outside of the obstacle: normals of A − B point out of a.
-    wanted.warm_start = options.warm_start.map(WarmStart::reversed);
-    wanted.extra = options.extra.part(|extra| extra.rays);
+    let warm_start = options.warm_start.map(WarmStart::reversed);
+    let rare = Rare(options.rare.0.map(|rare| rare.in_ray_casts));
+    let (min_lambda, max_lambda) = (zero, max_time);
+    let mut wanted =
+        RayCastOptions { min_lambda, max_lambda, tolerance, max_iterations, warm_start, sub_algorithm, method, rare };
     // The ray starts at zero, where both shapes are in place: at b's origin, seen from a's.
     let mut ray = Ray { source: origin_b, direction: motion.velocity_b - motion.velocity_a };
     if ray.direction == V::ZERO {
@@ -293,7 +411,7 @@ fn only_if_deeper<V: Vector>(
         return;
     }
     // Without a look at the start nothing is known.
-    match options.extra.get().and_then(|extra| (extra.of_motion)(start, answer, motion, options)) {
+    match options.rare.0.and_then(|rare| (rare.of_motion)(start, answer, motion, options)) {
         Some(Later::Apart) => {}
         Some(Later::Never(axis)) => {
             (answer.outcome, answer.status) = (Outcome::Miss(Miss { axis }), Status::Converged);

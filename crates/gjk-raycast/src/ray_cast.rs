@@ -135,8 +135,9 @@ compiled_once! {
             None => cast(body, CastRay::of(ray, Part::Whole), options, observer),
         };
         if let Ok(tip) = Point::new(ray.source) {
-            let b = &WithoutLines(&tip);
-            settle_ends(&mut cast, RayBodies { a: shape, skin: Scalar::ZERO, b, direction: ray.direction, direction_error: Scalar::ZERO }, options);
+            let (a, b, direction, skin, direction_error) =
+                (shape, &WithoutLines(&tip), ray.direction, Scalar::ZERO, Scalar::ZERO);
+            settle_ends(&mut cast, RayBodies { a, skin, b, direction, direction_error }, options);
         }
         answer(cast, ray)
     }

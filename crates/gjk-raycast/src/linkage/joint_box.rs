@@ -35,7 +35,7 @@ use super::linkage::Linkage;
 use super::result::FreeBox;
 use super::trajectory::{JointBounds, JointState};
 use crate::axial;
-use crate::ray::check_limits;
+use crate::outcome::check_limits;
 use crate::{SignedDistanceOptions, signed_distance};
 
 /// The number of joints whose signs are tried in all combinations. For each joint beyond these, the worst sign is taken
