@@ -5,9 +5,9 @@ use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::clip::{Clipped, ClippedCorners, clip};
+use super::contact_point::MAX_POINTS;
 use super::outline::{ContactPart, ContactPlane, Outline, ROOM};
 use super::reduction::{Candidate, Rank, WORTHWHILE, reduced};
-use super::result::MAX_POINTS;
 use super::surface::{MAX_SUPPORT_POINTS, Side};
 use super::{Contact, ContactPoint};
 use crate::SignedDistance;
