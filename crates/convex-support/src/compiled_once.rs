@@ -30,17 +30,18 @@ pub fn of_vectors<V: Vector, T: 'static>([vec2, vec3, vec3a, dvec2, dvec3]: [&'s
     found.downcast_ref().expect("`Vector` is sealed, and these are its types")
 }
 
-/// The constant `TABLE` of a type that is generic over vectors, in a static of this crate for each type of vectors.
+/// The constant `TABLE` of a type that is generic over vectors, a table, in a static of this crate for each type of
+/// vectors.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! compiled_table {
-    ($Table:ident<$V:ident>) => {{
+    ($Table:ident<$V:ident> of $Of:ident) => {{
         use $crate::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
-        static VEC2: $Table<Vec2> = $Table::TABLE;
-        static VEC3: $Table<Vec3> = $Table::TABLE;
-        static VEC3A: $Table<Vec3A> = $Table::TABLE;
-        static DVEC2: $Table<DVec2> = $Table::TABLE;
-        static DVEC3: $Table<DVec3> = $Table::TABLE;
+        static VEC2: $Table<Vec2> = $Of::<Vec2>::TABLE;
+        static VEC3: $Table<Vec3> = $Of::<Vec3>::TABLE;
+        static VEC3A: $Table<Vec3A> = $Of::<Vec3A>::TABLE;
+        static DVEC2: $Table<DVec2> = $Of::<DVec2>::TABLE;
+        static DVEC3: $Table<DVec3> = $Of::<DVec3>::TABLE;
         $crate::of_vectors::<$V, $Table<$V>>([&VEC2, &VEC3, &VEC3A, &DVEC2, &DVEC3])
     }};
 }
@@ -65,7 +66,7 @@ macro_rules! compiled_once {
             impl<$V: $crate::Vector> Compiled<$V> {
                 const TABLE: Self = Self(once::<$V>);
             }
-            $crate::compiled_table!(Compiled<$V>).0($($argument),*)
+            $crate::compiled_table!(Compiled<$V> of Compiled).0($($argument),*)
         }
     };
 }

@@ -108,9 +108,10 @@ impl<V: Vector> DistanceOptions<V> {
 
 impl<V: Vector> MayBeLean for DistanceOptions<V> {
     type Table = RareInDistances<V>;
+    const TABLE: Self::Table = RareInDistances::TABLE;
 
     fn rare() -> Rare<Self> {
-        Rare(Some(compiled_table!(RareInDistances<V>)))
+        Rare(Some(compiled_table!(RareInDistances<V> of DistanceOptions)))
     }
 }
 

@@ -163,6 +163,7 @@ mod separation;
 mod shape;
 mod signed_distance;
 mod simplex;
+mod start_in_contact;
 mod symmetric;
 mod unit;
 mod warm_start;

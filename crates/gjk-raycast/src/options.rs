@@ -16,6 +16,7 @@ pub(crate) const MAX_ITERATIONS: usize = 200;
 pub(crate) trait MayBeLean: Sized {
     /// The table of the functions that are left out then.
     type Table: 'static;
+    const TABLE: Self::Table;
 
     fn rare() -> Rare<Self>;
 }

@@ -238,17 +238,13 @@ impl Error for RayCastError {}
 
 /// The error of options that are NaN, in which every comparison would be as false as its opposite.
 pub(crate) fn check_numbers<S: Scalar>(options: [(&'static str, S); 2]) -> Result<(), RayCastError> {
-    match options.iter().find(|(_, value)| value.is_nan()) {
-        Some(&(parameter, _)) => Err(RayCastError::NonFinite { parameter, index: 0 }),
-        None => Ok(()),
-    }
+    let nan = options.iter().find(|(_, value)| value.is_nan());
+    nan.map_or(Ok(()), |&(parameter, _)| Err(RayCastError::NonFinite { parameter, index: 0 }))
 }
 
 pub(crate) fn check_finite<V: Vector>(parameter: &'static str, vector: V) -> Result<(), RayCastError> {
-    match (0..V::DIM).find(|&i| !vector.get(i).is_finite()) {
-        Some(index) => Err(RayCastError::NonFinite { parameter, index }),
-        None => Ok(()),
-    }
+    let index = (0..V::DIM).find(|&i| !vector.get(i).is_finite());
+    index.map_or(Ok(()), |index| Err(RayCastError::NonFinite { parameter, index }))
 }
 
 /// The error of limits that are invalid for a cast of two bodies. With an infinite target distance any two bodies

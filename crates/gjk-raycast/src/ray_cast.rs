@@ -135,9 +135,8 @@ compiled_once! {
             None => cast(body, CastRay::of(ray, Part::Whole), options, observer),
         };
         if let Ok(tip) = Point::new(ray.source) {
-            let (a, b, direction, skin, direction_error) =
-                (shape, &WithoutLines(&tip), ray.direction, Scalar::ZERO, Scalar::ZERO);
-            settle_ends(&mut cast, RayBodies { a, skin, b, direction, direction_error }, options);
+            let (b, skin, direction_error) = (&WithoutLines(&tip), Scalar::ZERO, Scalar::ZERO);
+            settle_ends(&mut cast, RayBodies { a: shape, skin, b, direction: ray.direction, direction_error }, options);
         }
         answer(cast, ray)
     }

@@ -42,16 +42,17 @@ pub(crate) struct RareInRayCasts<V: Vector> {
 type CastFn<V> =
     fn(&mut dyn CastBody<Vector = V>, CastRay<V>, &RayCastOptions<V>, &mut Observer<'_, V>) -> ObstacleCast<V>;
 
-impl<V: Vector> RareInRayCasts<V> {
-    pub(crate) const TABLE: Self =
-        Self { cast_by: cast_by::<V, true>, settle: start::settle, settle_end: start::settle_end, touch_beside };
-}
-
 impl<V: Vector> MayBeLean for RayCastOptions<V> {
     type Table = RareInRayCasts<V>;
+    const TABLE: Self::Table = RareInRayCasts {
+        cast_by: cast_by::<V, true>,
+        settle: start::settle,
+        settle_end: start::settle_end,
+        touch_beside,
+    };
 
     fn rare() -> Rare<Self> {
-        Rare(Some(compiled_table!(RareInRayCasts<V>)))
+        Rare(Some(compiled_table!(RareInRayCasts<V> of RayCastOptions)))
     }
 }
 

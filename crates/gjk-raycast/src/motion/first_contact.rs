@@ -97,15 +97,8 @@ impl<V: Vector> MotionCastOptions<V> {
     pub(crate) fn straight(&self) -> LinearCastOptions<V> {
         let &Self { max_time, tolerance, target_distance, start_in_contact, axis, max_iterations, .. } = self;
         let warm_start = axis.map(WarmStart::new);
-        LinearCastOptions {
-            max_time,
-            tolerance,
-            target_distance,
-            start_in_contact,
-            warm_start,
-            max_iterations,
-            ..LinearCastOptions::lean()
-        }
+        let lean = LinearCastOptions::lean();
+        LinearCastOptions { max_time, tolerance, target_distance, start_in_contact, warm_start, max_iterations, ..lean }
     }
 }
 
@@ -228,10 +221,9 @@ impl<'p, V: Vector> Search<'p, V> {
         let end = match options.start_in_contact {
             _ if near.gap > zero => search.advance(),
             StartInContact::Report => search.start_in_contact(),
-            StartInContact::IfDeeper => match begin_in_contact {
-                Some(begin_in_contact) => begin_in_contact(&mut search),
-                None => MotionEnd::Undecided(Status::Stalled),
-            },
+            StartInContact::IfDeeper => {
+                begin_in_contact.map_or(MotionEnd::Undecided(Status::Stalled), |begin| begin(&mut search))
+            }
         };
         search.answer(end)
     }

@@ -61,9 +61,10 @@ pub(crate) struct RareInMotionCasts<V: Vector> {
     have_met: fn(&MovingPair<'_, V>, &Instant<V>, V::Scalar) -> bool,
 }
 
-impl<V: Vector> RareInMotionCasts<V> {
-    const TABLE: Self = Self {
-        in_distances: &RareInDistances::TABLE,
+impl<V: Vector> MayBeLean for MotionCastOptions<V> {
+    type Table = RareInMotionCasts<V>;
+    const TABLE: Self::Table = RareInMotionCasts {
+        in_distances: &DistanceOptions::TABLE,
         straight: |body, shapes, cores, motion, options| {
             let options = LinearCastOptions { rare: LinearCastOptions::rare(), ..*options };
             by_search(body, shapes, cores, motion, &options, &mut Observer::none())
@@ -73,13 +74,9 @@ impl<V: Vector> RareInMotionCasts<V> {
         keep_in_contact: |pair, from, to, depth| pair.keep_in_contact(from, to, depth),
         have_met: |pair, near, time| pair.have_met(near, time),
     };
-}
-
-impl<V: Vector> MayBeLean for MotionCastOptions<V> {
-    type Table = RareInMotionCasts<V>;
 
     fn rare() -> Rare<Self> {
-        Rare(Some(compiled_table!(RareInMotionCasts<V>)))
+        Rare(Some(compiled_table!(RareInMotionCasts<V> of MotionCastOptions)))
     }
 }
 
