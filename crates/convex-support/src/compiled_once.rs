@@ -30,6 +30,22 @@ pub fn of_vectors<V: Vector, T: 'static>([vec2, vec3, vec3a, dvec2, dvec3]: [&'s
     found.downcast_ref().expect("`Vector` is sealed, and these are its types")
 }
 
+/// The constant `TABLE` of a type that is generic over vectors, a table, in a static of this crate for each type of
+/// vectors.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! compiled_table {
+    ($Table:ident<$V:ident> of $Of:ident) => {{
+        use $crate::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
+        static VEC2: $Table<Vec2> = $Of::<Vec2>::TABLE;
+        static VEC3: $Table<Vec3> = $Of::<Vec3>::TABLE;
+        static VEC3A: $Table<Vec3A> = $Of::<Vec3A>::TABLE;
+        static DVEC2: $Table<DVec2> = $Of::<DVec2>::TABLE;
+        static DVEC3: $Table<DVec3> = $Of::<DVec3>::TABLE;
+        $crate::of_vectors::<$V, $Table<$V>>([&VEC2, &VEC3, &VEC3A, &DVEC2, &DVEC3])
+    }};
+}
+
 /// Declares a function whose body is compiled here for each type of vector; a call selects that of its own type.
 ///
 /// The compiler knows the type at the call, and leaves the others out. The selection is a function of its own: inlined,
@@ -45,16 +61,12 @@ macro_rules! compiled_once {
         #[allow(clippy::type_complexity, reason = "the type is written once")]
         #[inline(never)]
         $visibility fn $name<$V: $crate::Vector>($($argument: $T),*) -> $R {
-            use $crate::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
             fn once<$V: $crate::Vector>($($argument: $T),*) -> $R $body
             struct Compiled<$V: $crate::Vector>(fn($($T),*) -> $R);
-            static VEC2: Compiled<Vec2> = Compiled(once::<Vec2>);
-            static VEC3: Compiled<Vec3> = Compiled(once::<Vec3>);
-            static VEC3A: Compiled<Vec3A> = Compiled(once::<Vec3A>);
-            static DVEC2: Compiled<DVec2> = Compiled(once::<DVec2>);
-            static DVEC3: Compiled<DVec3> = Compiled(once::<DVec3>);
-            let found: &Compiled<$V> = $crate::of_vectors::<$V, _>([&VEC2, &VEC3, &VEC3A, &DVEC2, &DVEC3]);
-            found.0($($argument),*)
+            impl<$V: $crate::Vector> Compiled<$V> {
+                const TABLE: Self = Self(once::<$V>);
+            }
+            $crate::compiled_table!(Compiled<$V> of Compiled).0($($argument),*)
         }
     };
 }

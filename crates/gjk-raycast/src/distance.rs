@@ -1,14 +1,15 @@
 //! The distance of two shapes (the paper's Algorithm 2).
 
 use convex_support::numerics::bound::raised;
-use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once};
+use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once, compiled_table};
 use num_traits::Float as _;
 
 use crate::body::{Both, Shapes};
 use crate::observer::Observer;
-use crate::separation::{Cores, OfOverlap, Wanted, direct, separation};
+use crate::options::{MAX_ITERATIONS, MayBeLean, Rare, options};
+use crate::separation::{Cores, OfOverlap, RareInDistances, Wanted, direct, separation};
 use crate::shape::Shape;
-use crate::{Distance, DistanceOptions, Iterate, SignedDistance, SignedDistanceOptions};
+use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, SubAlgorithm};
 
 /// The distance of two shapes, and their closest points.
 ///
@@ -54,6 +55,72 @@ where
     watched(a, b, options, &mut Observer::new(&mut observer))
 }
 
+/// Options of [`distance`](crate::distance).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct DistanceOptions<V: Vector> {
+    /// The width of the bracket at which to stop, relative to the distance. A bracket at the level of rounding,
+    /// relative to the size of the shapes and their distance, always ends the iteration. A negative value and NaN are
+    /// taken for zero. Default: 0.
+    pub tolerance: V::Scalar,
+    /// Stop as soon as the distance is certain to exceed this limit; the bracket may then still be wide. NaN is no
+    /// limit. Default: infinity.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub limit: V::Scalar,
+    /// The iterations after which to give up. Default: 200.
+    pub max_iterations: usize,
+    /// A first guess of the direction from `b` to `a`, such as the normal of the last answer. Default: none.
+    pub axis: Option<V>,
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
+    pub sub_algorithm: SubAlgorithm,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) rare: Rare<Self>,
+}
+
+impl<V: Vector> Default for DistanceOptions<V> {
+    fn default() -> Self {
+        Self { rare: Self::rare(), ..Self::lean() }
+    }
+}
+
+impl<V: Vector> DistanceOptions<V> {
+    /// The default options, with no machine code besides GJK: a program in which all options are lean has a third
+    /// of the code for distances.
+    ///
+    /// The second measurement near contact is left out: of bodies that are apart, or overlap, by no more than a few
+    /// roundings of their sizes. There the bracket is as wide as the errors of the largest number in the query, and if
+    /// GJK alone does not decide whether they are apart, the status is [`Status::Stalled`](crate::Status::Stalled). All
+    /// other answers are the same to the last bit.
+    #[must_use]
+    pub fn lean() -> Self {
+        Self {
+            tolerance: V::Scalar::ZERO,
+            limit: V::Scalar::infinity(),
+            max_iterations: MAX_ITERATIONS,
+            axis: None,
+            sub_algorithm: SubAlgorithm::Regions,
+            rare: Rare(None),
+        }
+    }
+}
+
+impl<V: Vector> MayBeLean for DistanceOptions<V> {
+    type Table = RareInDistances<V>;
+    const TABLE: Self::Table = RareInDistances::TABLE;
+
+    fn rare() -> Rare<Self> {
+        Rare(Some(compiled_table!(RareInDistances<V> of DistanceOptions)))
+    }
+}
+
+options! {
+    DistanceOptions: with_limit(limit: V::Scalar), with_tolerance(tolerance: V::Scalar),
+    with_max_iterations(max_iterations: usize), with_axis(axis: V => axis = Some(axis)),
+    with_sub_algorithm(sub_algorithm: SubAlgorithm)
+}
+
 /// [`distance`] of shapes behind pointers, compiled once for all callers that need it rarely.
 #[cold]
 #[inline(never)]
@@ -94,15 +161,15 @@ compiled_once! {
         options: DistanceOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> Distance<V> {
-        let DistanceOptions { tolerance, limit, max_iterations, axis, sub_algorithm, extra } = options;
+        let DistanceOptions { tolerance, limit, max_iterations, axis, sub_algorithm, rare } = options;
         let axis = axis.map(|axis| if is_swapped { -axis } else { axis });
         // No distance is negative. NaN is no limit.
         let limit = if limit < Scalar::ZERO { Scalar::ZERO } else { limit };
         // How deep bodies are that certainly overlap is not asked.
         let depth_limit = Scalar::ZERO;
         let of_separation =
-            SignedDistanceOptions { limit, depth_limit, max_iterations, axis, ..SignedDistanceOptions::new() };
-        let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation, extra) };
+            SignedDistanceOptions { limit, depth_limit, max_iterations, axis, ..Default::default() };
+        let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation, rare.0) };
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, false>(&mut cores, &wanted, observer));
         let mut answer = found.distance(&cores, &wanted);

@@ -7,10 +7,11 @@ use crate::body::{Both, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::distance::distance;
 use crate::gjk::{BoxesMeet, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, rounding};
 use crate::observer::Observer;
+use crate::options::{MAX_ITERATIONS, options};
 use crate::separation::is_near_contact;
 use crate::shape::Shape;
 use crate::unit::is_moderate;
-use crate::{DistanceOptions, IntersectOptions, Intersection, Iterate, Status};
+use crate::{DistanceOptions, Iterate, Status, SubAlgorithm};
 
 /// Whether two shapes have a point in common. Touching counts as meeting.
 ///
@@ -54,6 +55,68 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     watched(a, b, options, &mut Observer::new(&mut observer))
+}
+
+/// Options of [`intersects`](crate::intersects).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct IntersectOptions<V: Vector> {
+    /// The iterations after which to give up. Default: 200.
+    pub max_iterations: usize,
+    /// A first guess of a separating axis, pointing from `b` to `a`, such as the [`axis`](crate::Intersection::axis)
+    /// of the last answer. Default: none.
+    pub axis: Option<V>,
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
+    pub sub_algorithm: SubAlgorithm,
+}
+
+impl<V: Vector> IntersectOptions<V> {
+    /// The default options.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { max_iterations: MAX_ITERATIONS, axis: None, sub_algorithm: SubAlgorithm::Regions }
+    }
+}
+
+impl<V: Vector> Default for IntersectOptions<V> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+options! {
+    @setters IntersectOptions: with_max_iterations(max_iterations: usize), with_axis(axis: V => axis = Some(axis)),
+    with_sub_algorithm(sub_algorithm: SubAlgorithm)
+}
+
+/// The answer of [`intersects`](crate::intersects).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Intersection<V: Vector> {
+    /// Whether the shapes have a point in common. This is certain if `status` is [`Status::Converged`], and otherwise a
+    /// guess; [`decided`](Self::decided) tells the two apart. It agrees with [`Distance::overlap`]: shapes that touch,
+    /// to rounding, have a point in common.
+    pub overlap: bool,
+    /// A unit vector along which a plane separates the shapes, pointing from `b` to `a`; `None` where they overlap.
+    ///
+    /// Its components are rounded. So if the gap is as small as rounding, a few ε of the extent of both shapes, the
+    /// width of the slab across the rounded axis may be negative, by an ulp of that extent.
+    pub axis: Option<V>,
+    /// How the iteration ended.
+    pub status: Status,
+    /// The number of support points computed of each shape.
+    pub iterations: usize,
+}
+
+impl<V: Vector> Intersection<V> {
+    /// `Some(overlap)` if it is certain, `None` if the iteration ended undecided.
+    #[must_use]
+    pub fn decided(&self) -> Option<bool> {
+        (self.status == Status::Converged).then_some(self.overlap)
+    }
 }
 
 #[inline(always)]

@@ -141,7 +141,6 @@ mod data;
 mod derivative;
 mod distance;
 mod double;
-mod extra;
 mod gjk;
 mod half_space;
 mod intersects;
@@ -153,17 +152,18 @@ mod linkage;
 mod motion;
 mod observer;
 mod options;
+mod outcome;
 mod ray;
 mod ray_cast;
 mod ray_casts;
 mod ray_exit;
-mod result;
 mod scene;
 mod segments;
 mod separation;
 mod shape;
 mod signed_distance;
 mod simplex;
+mod start_in_contact;
 mod symmetric;
 mod unit;
 mod warm_start;
@@ -180,38 +180,34 @@ pub use derivative::{
     ClosestFeatures, ClosestVelocities, ImpactGradient, PairGradient, PairHessian, RayCastGradient,
     RigidMotionGradient, Smoothness,
 };
-pub use distance::{FreeStep, distance, distance_with, map_distances_into};
+pub use distance::{DistanceOptions, FreeStep, distance, distance_with, map_distances_into};
 pub use half_space::HalfSpace;
-pub use intersects::{intersects, intersects_with};
+pub use intersects::{IntersectOptions, Intersection, intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
-pub use linear_cast::{linear_cast, linear_cast_with};
+pub use linear_cast::{LinearCast, LinearCastOptions, Motion, linear_cast, linear_cast_with};
 pub use linkage::{
     FreeBox, FreeInterval, Joint, JointBounds, JointBox, JointBoxOutcome, JointKind, JointState, JointTrajectory, Link,
     Linkage, LinkageError, Met, Path, PathContact, PathWorkspace,
 };
 pub use motion::{
-    ChainMotion, Displacement, MovingBall, Pose, RigidMotion, Trajectory, TurningPlane, motion_cast, motion_cast_with,
+    ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionIterate, MovingBall, Pose, RigidMotion, Trajectory,
+    TurningPlane, motion_cast, motion_cast_with,
 };
-pub use options::{
-    CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, MotionCastOptions, RayCastOptions,
-    SignedDistanceOptions, StartInContact,
-};
-pub use ray::{Motion, Ray, RayCastError};
+pub use observer::{Iterate, Status};
+pub use outcome::{Cast, Impact, Miss, Outcome, RayCastError, StartInContact};
+pub use ray::{CastMethod, Ray, RayCast, RayCastOptions, RayHit};
 pub use ray_cast::{ray_cast, ray_cast_with};
 #[cfg(feature = "rayon")]
 pub use ray_casts::par_ray_casts;
 pub use ray_casts::{RayEntry, ray_casts, ray_entries_into};
-pub use ray_exit::ray_exit;
-pub use result::{
-    Cast, Distance, Impact, Intersection, Iterate, LinearCast, Miss, MotionCast, MotionIterate, Outcome, RayCast,
-    RayExit, RayHit, SignedDistance, Status,
-};
+pub use ray_exit::{RayExit, ray_exit};
 pub use scene::among::Among;
 pub use scene::{
     Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, Scene, SceneAnyHit,
     SceneCast, SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast,
     SceneSignedDistance, Work,
 };
+pub use separation::{Distance, SignedDistance, SignedDistanceOptions};
 pub use signed_distance::{signed_distance, signed_distance_with};
 pub use simplex::SubAlgorithm;
 pub use warm_start::WarmStart;

@@ -1,20 +1,18 @@
 //! The first contact of two shapes that move without turning.
 
-use convex_support::numerics::bound::{raised, roundings};
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Core, CoreKind, Hint, Posed, Scalar, SupportMap, Vector, compiled_once};
+use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
-use crate::cast::{CastHit, CastRay, ObstacleCast, Part, Quicker, RayBodies, cast, certain_closely, settle_ends};
-use crate::distance::distance_of_any;
-use crate::extra::in_static;
+use crate::cast::{CastHit, CastRay, ObstacleCast, Part, RayBodies, cast, certain_closely, settle_ends};
 use crate::observer::Observer;
-use crate::shape::{Shape, WithoutLines};
-use crate::signed_distance::signed_distance_of_any;
+use crate::options::{MAX_ITERATIONS, MayBeLean, Rare, options};
+use crate::outcome::{check_finite, check_limits};
+use crate::shape::Shape;
 use crate::{
-    DistanceOptions, HalfSpace, Impact, Iterate, LinearCast, LinearCastOptions, Miss, Motion, Outcome, Ray, RayCast,
-    RayCastError, RayCastOptions, SignedDistance, SignedDistanceOptions, StartInContact, Status, WarmStart,
+    Cast, CastMethod, Impact, Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RigidMotion,
+    StartInContact, Status, SubAlgorithm, WarmStart,
 };
 
 /// Shapes may be in contact if they are apart by so many ε of their sizes and of their distance from the origin, and so
@@ -104,6 +102,116 @@ where
     watched(a, b, motion, options, &mut Observer::new(&mut observer))
 }
 
+/// The velocities of two shapes, in units of length per unit of time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Motion<V> {
+    /// The velocity of `a`.
+    pub velocity_a: V,
+    /// The velocity of `b`.
+    pub velocity_b: V,
+}
+
+impl<V: Vector> Motion<V> {
+    /// The motions of both bodies.
+    #[must_use]
+    pub fn translations(self) -> [RigidMotion<V>; 2] {
+        [self.velocity_a, self.velocity_b].map(RigidMotion::translation)
+    }
+
+    /// The error of a motion that is invalid, or cannot be cast with these options.
+    pub(crate) fn check(&self, options: &LinearCastOptions<V>) -> Result<(), RayCastError> {
+        check_finite("velocity_a", self.velocity_a)?;
+        check_finite("velocity_b", self.velocity_b)?;
+        check_limits(options.max_time, options.target_distance)
+    }
+}
+
+/// Options of [`linear_cast`](crate::linear_cast).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct LinearCastOptions<V: Vector> {
+    /// The end of the motion; it belongs to the motion. If the motion ends at the first contact, to rounding, neither a
+    /// hit nor a miss is certain. If it is negative, the motion has no time, and the answer is a miss. Default:
+    /// infinity.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub max_time: V::Scalar,
+    /// The distance at which the shapes count as touching: the cast stops that far from contact. A negative value is
+    /// taken for zero. Default: 0.
+    pub target_distance: V::Scalar,
+    /// What to answer if the shapes touch at the start. To step a world from contact to contact, take
+    /// [`StartInContact::IfDeeper`]. Default: [`StartInContact::Report`].
+    pub start_in_contact: StartInContact,
+    /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
+    /// of rounding always ends the iteration. A negative value and NaN are taken for zero. Default: 0.
+    pub tolerance: V::Scalar,
+    /// The iterations after which to give up, those of repeated searches included. Only the depths that
+    /// [`StartInContact::IfDeeper`] looks at may take as many each. Default: 200.
+    pub max_iterations: usize,
+    /// The warm start from the last frame's answer, which predicts the direction from `b` to `a` at contact. Default:
+    /// none.
+    pub warm_start: Option<WarmStart<V>>,
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
+    pub sub_algorithm: SubAlgorithm,
+    /// How planes are found. Default: [`CastMethod::Portal`].
+    pub method: CastMethod,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) rare: Rare<Self>,
+}
+
+impl<V: Vector> Default for LinearCastOptions<V> {
+    fn default() -> Self {
+        Self { rare: Self::rare(), ..Self::lean() }
+    }
+}
+
+impl<V: Vector> LinearCastOptions<V> {
+    /// The default options, with no machine code besides Algorithm 3 and the closed forms for points and balls: a
+    /// program in which all options are lean has three tenths of the code for linear casts.
+    ///
+    /// The faster search of [`CastMethod::Portal`] is left out, as in [`RayCastOptions::lean`], and so are all
+    /// measurements at the start besides the cast itself. If shapes touch or overlap there, the hit has a point of
+    /// both, but no normal. It is certain only if the search happens to end with points of both around the start. With
+    /// [`StartInContact::IfDeeper`] shapes that may be in contact at the start are
+    /// [undecided](crate::Outcome::Undecided).
+    #[must_use]
+    pub fn lean() -> Self {
+        Self {
+            max_time: V::Scalar::infinity(),
+            target_distance: V::Scalar::ZERO,
+            start_in_contact: StartInContact::Report,
+            tolerance: V::Scalar::ZERO,
+            max_iterations: MAX_ITERATIONS,
+            warm_start: None,
+            sub_algorithm: SubAlgorithm::Regions,
+            method: CastMethod::Portal,
+            rare: Rare(None),
+        }
+    }
+}
+
+options! {
+    LinearCastOptions: with_max_time(max_time: V::Scalar), with_target_distance(target_distance: V::Scalar),
+    with_start_in_contact(start_in_contact: StartInContact), with_tolerance(tolerance: V::Scalar),
+    with_max_iterations(max_iterations: usize), with_warm_start(warm_start: Option<WarmStart<V>>),
+    with_axis(axis: V => warm_start = Some(WarmStart::new(axis))), with_sub_algorithm(sub_algorithm: SubAlgorithm),
+    with_method(method: CastMethod)
+}
+
+/// The answer of [`linear_cast`](crate::linear_cast).
+pub type LinearCast<V> = Cast<Impact<V>, V>;
+
+impl<V: Vector> LinearCast<V> {
+    /// The warm start for the [cast of the next frame](crate::LinearCastOptions::warm_start), from this answer and its
+    /// own warm start.
+    #[must_use]
+    pub fn warm_start(&self, before: Option<WarmStart<V>>) -> Option<WarmStart<V>> {
+        self.outcome.warm_start(before, |hit| hit.normal)
+    }
+}
+
 #[inline(always)]
 fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     a: &A,
@@ -132,24 +240,6 @@ pub(crate) fn as_body<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> 
     search(&mut body, shapes.each(), &cores)
 }
 
-/// The functions that measure shapes in contact at the start, in addition to the cast itself.
-#[allow(clippy::type_complexity, reason = "the type is written once")]
-pub(crate) struct AtStart<V: Vector> {
-    rays: &'static Quicker<V>,
-    touch: fn(&StartingPair<'_, V>, &mut LinearCast<V>, &LinearCastOptions<V>),
-    of_motion: fn(&StartingPair<'_, V>, &mut LinearCast<V>, Motion<V>, &LinearCastOptions<V>) -> Option<Later<V>>,
-}
-
-impl<V: Vector> AtStart<V> {
-    pub(crate) const TABLE: Self = Self {
-        rays: &Quicker::TABLE,
-        touch: |start, answer, options| start.touch(answer, options),
-        of_motion: |start, answer, motion, options| start.of_motion(answer, motion, options),
-    };
-}
-
-in_static!(AtStart);
-
 compiled_once! {
     /// The cast by a search, for a pair of shapes with these cores.
     pub(crate) fn by_search<V>(
@@ -167,7 +257,7 @@ compiled_once! {
         let is_point = |core: &Core<V>| matches!(core.kind, CoreKind::Point(_));
         let known = || certain_closely(body, ray, direction_error, &wanted, observer);
         // Where bodies begin in contact, only a search or a further look has a point of both.
-        let is_told = |known: &RayCast<V>| known.upper > <V::Scalar as Scalar>::ZERO || options.extra.get().is_some();
+        let is_told = |known: &RayCast<V>| known.upper > <V::Scalar as Scalar>::ZERO || options.rare.0.is_some();
         let mut cast = match cores.iter().any(is_point).then(known).flatten().filter(is_told) {
             Some(known) => ObstacleCast::of_certain(&known, body, ray),
             None => cast(body, whole, &wanted, observer),
@@ -200,9 +290,9 @@ fn answer<V: Vector>(
     if let Outcome::Hit(Impact { time, normal: None, .. }) = answer.outcome
         && time == zero
         && options.start_in_contact == StartInContact::Report
-        && let Some(extra) = options.extra.get()
+        && let Some(rare) = options.rare.0
     {
-        (extra.touch)(&start, &mut answer, options);
+        (rare.touch)(&start, &mut answer, options);
     }
     if options.start_in_contact == StartInContact::IfDeeper {
         let [core_a, core_b] = cores;
@@ -226,15 +316,13 @@ fn ray_of<V: Vector>(
     options: &LinearCastOptions<V>,
 ) -> (CastRay<V>, RayCastOptions<V>) {
     let zero = V::Scalar::ZERO;
-    let mut wanted = RayCastOptions::lean()
-        .with_max_lambda(options.max_time)
-        .with_tolerance(options.tolerance)
-        .with_max_iterations(options.max_iterations)
-        .with_sub_algorithm(options.sub_algorithm)
-        .with_method(options.method);
+    let &LinearCastOptions { max_time, tolerance, max_iterations, sub_algorithm, method, .. } = options;
     // Seen from b, a is at the outside of the obstacle: normals of A − B point out of a.
-    wanted.warm_start = options.warm_start.map(WarmStart::reversed);
-    wanted.extra = options.extra.part(|extra| extra.rays);
+    let warm_start = options.warm_start.map(WarmStart::reversed);
+    let rare = Rare(options.rare.0.map(|rare| rare.in_ray_casts));
+    let (min_lambda, max_lambda) = (zero, max_time);
+    let mut wanted =
+        RayCastOptions { min_lambda, max_lambda, tolerance, max_iterations, warm_start, sub_algorithm, method, rare };
     // The ray starts at zero, where both shapes are in place: at b's origin, seen from a's.
     let mut ray = Ray { source: origin_b, direction: motion.velocity_b - motion.velocity_a };
     if ray.direction == V::ZERO {
@@ -293,7 +381,7 @@ fn only_if_deeper<V: Vector>(
         return;
     }
     // Without a look at the start nothing is known.
-    match options.extra.get().and_then(|extra| (extra.of_motion)(start, answer, motion, options)) {
+    match options.rare.0.and_then(|rare| (rare.of_motion)(start, answer, motion, options)) {
         Some(Later::Apart) => {}
         Some(Later::Never(axis)) => {
             (answer.outcome, answer.status) = (Outcome::Miss(Miss { axis }), Status::Converged);
@@ -318,175 +406,18 @@ fn only_if_deeper<V: Vector>(
     }
 }
 
-/// The number of places along a motion that are looked at, at most.
-const LOOKS: usize = 24;
-
 /// Two shapes at the start of a cast. They are behind pointers, so that rare queries are compiled once.
-struct StartingPair<'s, V: Vector> {
-    a: Shape<'s, V>,
-    b: Shape<'s, V>,
+pub(crate) struct StartingPair<'s, V: Vector> {
+    pub(crate) a: Shape<'s, V>,
+    pub(crate) b: Shape<'s, V>,
     /// How far apart they count as touching.
-    target: V::Scalar,
+    pub(crate) target: V::Scalar,
     /// How much less, or more, may be rounding.
-    slack: V::Scalar,
-}
-
-impl<V: Vector> StartingPair<'_, V> {
-    /// Returns a hit at the start by a point of both shapes, and the normal if they only touch: the entry that the cast
-    /// finds is behind the start or, if they slide, ahead of it.
-    #[cold]
-    #[inline(never)]
-    fn touch(&self, answer: &mut LinearCast<V>, options: &LinearCastOptions<V>) {
-        let zero = V::Scalar::ZERO;
-        let left = |taken: usize| options.max_iterations.saturating_sub(taken);
-        let wanted = DistanceOptions::new().with_max_iterations(left(answer.iterations));
-        let at_start = distance_of_any(self.a, self.b, wanted.with_sub_algorithm(options.sub_algorithm));
-        answer.iterations += at_start.iterations;
-        let max_iterations = left(answer.iterations);
-        let start = self.signed_distance(&LinearCastOptions { max_iterations, ..*options }, zero);
-        answer.iterations += start.iterations;
-        let only_touches = start.upper >= self.target;
-        if !only_touches {
-            // They are certainly deeper than touching, whatever the motion.
-            (answer.upper, answer.status) = (zero, Status::Converged);
-        }
-        let normal = only_touches.then_some(start.normal);
-        answer.outcome = Outcome::Hit(Impact { time: zero, point: at_start.point_b, normal });
-    }
-
-    /// The signed distance at the start; the search stops as soon as the depth is certain to exceed a limit.
-    fn signed_distance(&self, options: &LinearCastOptions<V>, depth_limit: V::Scalar) -> SignedDistance<V> {
-        let mut wanted = SignedDistanceOptions::new().with_depth_limit(depth_limit);
-        wanted.max_iterations = wanted.max_iterations.min(options.max_iterations);
-        wanted.axis = options.warm_start.map(|warm| warm.axis);
-        signed_distance_of_any(self.a, self.b, wanted)
-    }
-
-    /// Whether shapes that touch or overlap at the start, to a slack that is the rounding of their places, get deeper by
-    /// more than that as they move; `None` if that is not proved.
-    ///
-    /// The signed distance `s` of bodies that move straight is a convex function of time: it is the greatest of the
-    /// lines `g − c·t` of all planes, each of which keeps the shapes apart by `g` at the start, and is closed in on at
-    /// a speed `c`. So shapes get deeper at once or never, and never do if they were deeper before the start.
-    #[cold]
-    #[inline(never)]
-    fn of_motion(
-        &self,
-        answer: &mut LinearCast<V>,
-        motion: Motion<V>,
-        options: &LinearCastOptions<V>,
-    ) -> Option<Later<V>> {
-        let start = self.signed_distance(options, V::Scalar::infinity());
-        answer.iterations += start.iterations;
-        if !(start.lower <= self.target + self.slack) {
-            return Some(Later::Apart);
-        }
-        let mut later = |motion| self.later(motion, options, &start, &mut answer.iterations);
-        let backwards = Motion { velocity_a: -motion.velocity_a, velocity_b: -motion.velocity_b };
-        later(motion).or_else(|| match later(backwards) {
-            Some(Later::Deeper { .. }) => Some(Later::Never(start.normal)),
-            _ => None,
-        })
-    }
-
-    /// The same, as far as the places after the start tell: two lines, of a plane that is closed in on and of one that
-    /// is not, bound `s` from below by the height at which they cross. Perhaps shapes never get deeper than that.
-    /// Otherwise they are looked at when the lines cross: either they are deeper then, or the line of the nearest plane
-    /// there takes the place of one of both. This ends soon if `s` has kinks. If it is smooth, each second look is
-    /// where its slope is zero if that changes evenly.
-    fn later(
-        &self,
-        motion: Motion<V>,
-        options: &LinearCastOptions<V>,
-        start: &SignedDistance<V>,
-        iterations: &mut usize,
-    ) -> Option<Later<V>> {
-        let zero = V::Scalar::ZERO;
-        let velocity = motion.velocity_a - motion.velocity_b;
-        let Some(along) = velocity.unit() else { return (velocity == V::ZERO).then_some(Later::Never(start.normal)) };
-        let lost = lost_in_sum(motion.velocity_a, -motion.velocity_b).norm();
-        // Of numbers out of range nothing is known.
-        let slack = Some(self.slack).filter(|slack| slack.is_finite())?;
-        let [never, deeper] = [start.upper, start.lower].map(|s| s.min(self.target) - slack);
-        let mut before = self.line(start.normal, motion, zero)?;
-        let mut after = if before.closing > zero { self.line(along, motion, V::Scalar::infinity())? } else { before };
-        for look in 0..LOOKS {
-            let closing = before.closing - after.closing;
-            // It is zero if the quotient is NaN, since there is only one line.
-            let crossing = ((before.gap - after.gap) / closing).max(zero);
-            // The first line is higher before that, and the second one after it. That is all the time after the start
-            // if they cross before it, and then no look tells more.
-            let least = if crossing > zero { before.at(crossing).min(after.at(crossing)) } else { after.gap };
-            if least >= never {
-                return Some(Later::Never(if after.gap >= never { after.normal } else { before.normal }));
-            }
-            let is_smooth = look % 2 == 1 && after.time < V::Scalar::infinity();
-            let level = before.time + (after.time - before.time) * (before.closing / closing);
-            let time = if is_smooth { level } else { crossing };
-            if !(time > zero) {
-                return None;
-            }
-            let step = velocity * time;
-            let moved = Posed::translated(self.a, step).ok()?;
-            let moved = StartingPair { a: &WithoutLines(&moved), b: self.b, ..*self };
-            // The place is rounded, and so is the velocity.
-            let off = roundings(2.0, step.norm()) + raised(lost * time);
-            let there = moved.signed_distance(options, (off - deeper).max(zero));
-            *iterations += there.iterations + 1;
-            let upper = there.upper + off;
-            if upper < deeper {
-                // They are deeper from the start on. If they may begin apart, by the slack, they touch no later than
-                // where the chord of the convex function does.
-                let touching = (start.upper - self.target).max(zero) / (start.upper - upper) * time;
-                let upper = touching + roundings(8.0, touching);
-                return Some(Later::Deeper { upper, point: start.point_b, normal: start.normal });
-            }
-            // The least is between the bounds that would prove either, however exactly it is known.
-            if least >= deeper && upper < never {
-                return None;
-            }
-            let line = self.line(there.normal, motion, time)?;
-            *(if line.closing > zero { &mut before } else { &mut after }) = line;
-        }
-        None
-    }
-
-    /// The line of the plane across a direction that keeps the shapes farthest apart, found when they have moved for
-    /// some time.
-    fn line(&self, direction: V, motion: Motion<V>, time: V::Scalar) -> Option<Line<V>> {
-        let plane = HalfSpace::new(direction, V::Scalar::ZERO).ok()?.plane();
-        let [core_a, core_b] = [self.a.core(), self.b.core()];
-        let point_a = self.a.core_support(-direction, &mut Hint::new());
-        let point_b = self.b.core_support(direction, &mut Hint::new());
-        let error = plane.error_along(&self.a.rounding()) + plane.error_along(&self.b.rounding());
-        let terms = [core_a.origin, point_a, -core_b.origin, -point_b];
-        let gap = plane.height(terms, error, core_a.radius + core_b.radius).least();
-        let closing = plane.sinking([motion.velocity_a, -motion.velocity_b]).most();
-        Some(Line { gap, closing, normal: direction, time })
-    }
-}
-
-/// A lower bound of the signed distance of two shapes, by a plane between them: no more than the `gap` at the start,
-/// and `closing` less in each unit of time.
-#[derive(Clone, Copy)]
-struct Line<V: Vector> {
-    gap: V::Scalar,
-    closing: V::Scalar,
-    normal: V,
-    /// The time at which the plane is nearest to contact.
-    time: V::Scalar,
-}
-
-impl<V: Vector> Line<V> {
-    /// The bound at a time.
-    fn at(&self, time: V::Scalar) -> V::Scalar {
-        let way = self.closing * time;
-        self.gap - way - roundings(4.0, self.gap.abs() + way.abs())
-    }
+    pub(crate) slack: V::Scalar,
 }
 
 /// What is proved of shapes that may be in contact at the start.
-enum Later<V: Vector> {
+pub(crate) enum Later<V: Vector> {
     /// They are apart there.
     Apart,
     /// They get deeper, from the start on, or if they are apart by the slack, from `upper` on at the latest.

@@ -1,8 +1,69 @@
-//! The observer of a search, if there is one.
+//! What a search shows: its iterates while it runs, if there is an observer, and how it ended.
 
-use convex_support::Vector;
+use convex_support::{Scalar as _, Vector};
 
-use crate::Iterate;
+use crate::simplex::MAX_POINTS;
+
+/// How an iterative method ended. The bounds of the answer hold in every case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Status {
+    /// The bracket is as narrow as was asked for, or as narrow as rounding allows. A hit also has an upper bound.
+    Converged,
+    /// The iterations were used up before the bracket was that narrow.
+    IterationLimit,
+    /// No further progress was possible in floating point before the bracket was that narrow, for example if a hit may
+    /// be a miss, or is certain only some way behind where it is found; or a support map returned numbers that are not
+    /// finite.
+    Stalled,
+}
+
+/// The state of an iteration that an observer sees.
+///
+/// Its points and vectors are those of the configuration space obstacle, relative to the query point: the points of
+/// `A − B` for [`distance`](crate::distance) and [`intersects`](crate::intersects), and for casts the points `x − p`
+/// of `{x} − C`, with the current point `x` of the ray. So in every case the iteration searches for zero.
+#[derive(Clone, Copy, Debug)]
+pub struct Iterate<'a, V: Vector> {
+    /// The number of the iterate, from 0. The first has an empty simplex and the first direction for its `v`. If a
+    /// shape knows its [closest point](convex_support::SupportMap::core_closest_point), the first simplex is that
+    /// point.
+    pub iteration: usize,
+    /// The vertices of the simplex that `v` lies in (the paper's `W`, `S_k` in the book), relative to the query point,
+    /// in units of `scale`; empty at first.
+    pub simplex: &'a [V],
+    /// The point of the simplex closest to zero (`V_k`), in units of `scale`; in the first iterate, the first
+    /// direction.
+    pub v: V,
+    /// The support point found along `v` (`W_k`), in units of `scale`. In 3D the direction may have been turned from
+    /// `v`, by curvature or towards the best plane known.
+    pub w: V,
+    /// The factor, a power of two, that turns the vectors above into lengths of the world.
+    pub scale: V::Scalar,
+    /// The lower bound: of the distance of the cores, or of the hit parameter λ.
+    pub lower: V::Scalar,
+    /// The upper bound of the same value.
+    pub upper: V::Scalar,
+}
+
+impl<V: Vector> Iterate<'_, V> {
+    /// Shows the iterate for the bodies in the other order.
+    #[inline(always)]
+    pub(crate) fn reversed(&self, observer: impl FnOnce(Iterate<'_, V>)) {
+        let mut simplex = [V::ZERO; MAX_POINTS];
+        for (reversed, &point) in simplex.iter_mut().zip(self.simplex) {
+            *reversed = -point;
+        }
+        observer(Iterate { simplex: &simplex[..self.simplex.len()], v: -self.v, w: -self.w, ..*self });
+    }
+
+    /// The width of the bracket.
+    #[must_use]
+    pub fn gap(&self) -> V::Scalar {
+        let gap = self.upper - self.lower;
+        if gap > V::Scalar::ZERO { gap } else { V::Scalar::ZERO }
+    }
+}
 
 /// An observer of a search, or none. It is behind a pointer, because the searches are compiled once. Iterates are
 /// computed only for an observer.

@@ -1,12 +1,11 @@
-//! Rays, and the velocities of moving shapes, from which rays are made.
-
-use core::error::Error;
-use core::fmt::{self, Display, Formatter};
+//! Rays: the question of a ray cast, its options and its answer.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::{LinearCastOptions, RayCastOptions, RigidMotion};
+use crate::options::{MAX_ITERATIONS, MayBeLean as _, Rare, options};
+use crate::outcome::{check_finite, check_numbers};
+use crate::{Cast, Miss, Outcome, RayCastError, Status, SubAlgorithm, WarmStart};
 
 /// The ray of the points `source + λ·direction`, λ ≥ 0. The direction need not be of unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,83 +50,121 @@ impl<V: Vector> Ray<V> {
     }
 }
 
-/// The error of options that are NaN, in which every comparison would be as false as its opposite.
-pub(crate) fn check_numbers<S: Scalar>(options: [(&'static str, S); 2]) -> Result<(), RayCastError> {
-    match options.iter().find(|(_, value)| value.is_nan()) {
-        Some(&(parameter, _)) => Err(RayCastError::NonFinite { parameter, index: 0 }),
-        None => Ok(()),
-    }
-}
-
-pub(crate) fn check_finite<V: Vector>(parameter: &'static str, vector: V) -> Result<(), RayCastError> {
-    match (0..V::DIM).find(|&i| !vector.get(i).is_finite()) {
-        Some(index) => Err(RayCastError::NonFinite { parameter, index }),
-        None => Ok(()),
-    }
-}
-
-/// The error of limits that are invalid for a cast of two bodies. With an infinite target distance any two bodies
-/// would touch at any time, and a body swept by it would not be a body.
-pub(crate) fn check_limits<S: Scalar>(max_time: S, target_distance: S) -> Result<(), RayCastError> {
-    let target = if target_distance < S::infinity() { target_distance } else { S::nan() };
-    check_numbers([("max_time", max_time), ("target_distance", target)])
-}
-
-/// The velocities of two shapes, in units of length per unit of time.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Motion<V> {
-    /// The velocity of `a`.
-    pub velocity_a: V,
-    /// The velocity of `b`.
-    pub velocity_b: V,
-}
-
-impl<V: Vector> Motion<V> {
-    /// The motions of both bodies.
-    #[must_use]
-    pub fn translations(self) -> [RigidMotion<V>; 2] {
-        [self.velocity_a, self.velocity_b].map(RigidMotion::translation)
-    }
-
-    /// The error of a motion that is invalid, or cannot be cast with these options.
-    pub(crate) fn check(&self, options: &LinearCastOptions<V>) -> Result<(), RayCastError> {
-        check_finite("velocity_a", self.velocity_a)?;
-        check_finite("velocity_b", self.velocity_b)?;
-        check_limits(options.max_time, options.target_distance)
-    }
-}
-
-/// Why a ray or a motion was refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// How a cast finds the planes that bound its hit. Every method computes the bounds in the same way, so that the
+/// choice changes only the time that a cast takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub enum RayCastError {
-    /// The direction of the ray is the zero vector, so that it has no hit parameter. To ask whether a point is in a
-    /// shape, use [`intersects`](crate::intersects).
-    ZeroDirection,
-    /// A coordinate is NaN or infinite.
-    NonFinite {
-        /// The name of the vector, such as `"source"`, `"velocity_a"` or `"motion_a"`, or of the option.
-        parameter: &'static str,
-        /// Which coordinate, counted from 0.
-        index: usize,
-    },
-    /// The closest point of the set, which [`iterative_ray_cast`](crate::iterative_ray_cast) works with, is not known:
-    /// the shape has no closed form of it. [`ray_cast`](crate::ray_cast) needs only support points.
-    NoClosestPoint,
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum CastMethod {
+    /// The fastest. It begins with the [certain crossing](convex_support::SupportMap::certain_crossing) of the shape by
+    /// the line, if the shape has one. Then, in 3D, a triangle of support points that the ray pierces (a portal) is
+    /// moved towards the surface, by the simplex method of linear programming. If this leaves the answer in doubt, and
+    /// in 2D, it is the same as [`Gjk`](Self::Gjk).
+    #[default]
+    Portal,
+    /// The paper's Algorithm 3: each plane is across the vector from the ray's point to the simplex of support points.
+    Gjk,
 }
 
-impl Display for RayCastError {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::ZeroDirection => f.write_str("the direction of the ray is the zero vector"),
-            Self::NonFinite { parameter, index } => write!(f, "{parameter} is NaN or infinite at index {index}"),
-            Self::NoClosestPoint => {
-                f.write_str("the shape has no closed form of its closest point: use `ray_cast`, which needs none")
-            }
+/// Options of [`ray_cast`](crate::ray_cast).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct RayCastOptions<V: Vector> {
+    /// The beginning of the ray, in units of its direction; it belongs to the ray. Points of the target before it do
+    /// not count, so that a ray can start on a surface and leave it. A negative value is taken for zero. Default: 0.
+    pub min_lambda: V::Scalar,
+    /// The end of the ray, in units of its direction; the end belongs to the ray. If the ray ends where it enters the
+    /// target, to rounding, neither a hit nor a miss is certain. If the end is before the beginning, or the
+    /// beginning is infinite, the ray has no points, and the answer is a miss. Default: infinity.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub max_lambda: V::Scalar,
+    /// How far along the ray the hit may stay uncertain, relative to the size of the target. A bracket at the level of
+    /// rounding always ends the iteration. A negative value and NaN are taken for zero. Default: 0.
+    pub tolerance: V::Scalar,
+    /// The iterations after which to give up, those of repeated searches included. Default: 200.
+    pub max_iterations: usize,
+    /// The warm start from the last frame's answer, which predicts the outward normal or a separating axis. Default:
+    /// none.
+    pub warm_start: Option<WarmStart<V>>,
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
+    pub sub_algorithm: SubAlgorithm,
+    /// How planes are found. Default: [`CastMethod::Portal`].
+    pub method: CastMethod,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) rare: Rare<Self>,
+}
+
+impl<V: Vector> Default for RayCastOptions<V> {
+    fn default() -> Self {
+        Self { rare: Self::rare(), ..Self::lean() }
+    }
+}
+
+impl<V: Vector> RayCastOptions<V> {
+    /// The default options, with no machine code besides the closed forms of the shape and Algorithm 3: a program in
+    /// which all options are lean has two fifths of the code for rays.
+    ///
+    /// The faster search of [`CastMethod::Portal`] is left out. It is then the same as [`Gjk`](CastMethod::Gjk) where
+    /// no closed form is certain: a search takes two to five times as long, and its bracket may be wider. The second
+    /// measurement of a source within rounding of the target is left out too: there the answer may be a hit that is not
+    /// [certain](crate::RayCast::is_certain), or undecided, where the default options decide.
+    #[must_use]
+    pub fn lean() -> Self {
+        Self {
+            min_lambda: V::Scalar::ZERO,
+            max_lambda: V::Scalar::infinity(),
+            tolerance: V::Scalar::ZERO,
+            max_iterations: MAX_ITERATIONS,
+            warm_start: None,
+            sub_algorithm: SubAlgorithm::Regions,
+            method: CastMethod::Portal,
+            rare: Rare(None),
         }
     }
+
+    /// Whether the ray has no points: it ends before it begins, or begins at infinity.
+    pub(crate) fn is_empty(&self) -> bool {
+        let begin = self.min_lambda.max(V::Scalar::ZERO);
+        !(begin <= self.max_lambda && begin < V::Scalar::infinity())
+    }
 }
 
-impl Error for RayCastError {}
+options! {
+    RayCastOptions: with_min_lambda(min_lambda: V::Scalar), with_max_lambda(max_lambda: V::Scalar),
+    with_tolerance(tolerance: V::Scalar), with_max_iterations(max_iterations: usize),
+    with_warm_start(warm_start: Option<WarmStart<V>>), with_axis(axis: V => warm_start = Some(WarmStart::new(axis))),
+    with_sub_algorithm(sub_algorithm: SubAlgorithm), with_method(method: CastMethod)
+}
+
+/// The answer of [`ray_cast`](crate::ray_cast).
+pub type RayCast<V> = Cast<RayHit<V>, V>;
+
+/// Where a ray enters a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RayHit<V: Vector> {
+    /// The hit parameter, in units of the ray's direction; 0 if the source is in the target.
+    pub lambda: V::Scalar,
+    /// The point that is hit, in the frame of the ray and the target: the source plus λ times the direction.
+    pub point: V,
+    /// The unit outward normal there; at an edge or a vertex, one of the normals. `None` if the ray begins in the
+    /// target.
+    pub normal: Option<V>,
+}
+
+impl<V: Vector> RayCast<V> {
+    /// Of a ray without points, which any plane separates from the shape.
+    pub(crate) fn missed(axis: V) -> Self {
+        let axis = axis.unit().unwrap_or_else(|| V::axis(0));
+        Self::without_upper(Outcome::Miss(Miss { axis }), V::Scalar::infinity(), Status::Converged, 0)
+    }
+
+    /// The warm start for the [cast of the next frame](crate::RayCastOptions::warm_start), from this answer and its own
+    /// warm start.
+    #[must_use]
+    pub fn warm_start(&self, before: Option<WarmStart<V>>) -> Option<WarmStart<V>> {
+        self.outcome.warm_start(before, |hit| hit.normal)
+    }
+}

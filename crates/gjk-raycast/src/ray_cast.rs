@@ -135,8 +135,8 @@ compiled_once! {
             None => cast(body, CastRay::of(ray, Part::Whole), options, observer),
         };
         if let Ok(tip) = Point::new(ray.source) {
-            let b = &WithoutLines(&tip);
-            settle_ends(&mut cast, RayBodies { a: shape, skin: Scalar::ZERO, b, direction: ray.direction, direction_error: Scalar::ZERO }, options);
+            let (b, skin, direction_error) = (&WithoutLines(&tip), Scalar::ZERO, Scalar::ZERO);
+            settle_ends(&mut cast, RayBodies { a: shape, skin, b, direction: ray.direction, direction_error }, options);
         }
         answer(cast, ray)
     }

@@ -6,7 +6,7 @@ use num_traits::Float as _;
 use crate::body::{CastBody, Measures, Single};
 use crate::cast::{CastHit, CastRay, LocalRay, Part, cast};
 use crate::observer::Observer;
-use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, Status, ray_cast};
+use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayHit, Status, ray_cast};
 
 /// The last point of a ray in a shape, with the normal there.
 ///
@@ -38,7 +38,7 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
     options: RayCastOptions<S::Vector>,
 ) -> Result<RayExit<S::Vector>, RayCastError> {
     ray.check(&options)?;
-    let mut exit = exit_of_line(&mut Single::new(target), ray, &options);
+    let mut exit = by_search(&mut Single::new(target), ray, &options);
     let (begin, end) = (options.min_lambda.max(Scalar::ZERO), options.max_lambda);
     let infinity = <S::Vector as Vector>::Scalar::infinity();
     let Outcome::Hit(hit) = exit.outcome else { return Ok(exit) };
@@ -71,9 +71,38 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
     Ok(exit.on_ray(begin))
 }
 
+/// The answer of [`ray_exit`](crate::ray_exit).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
+pub struct RayExit<V: Vector> {
+    /// Where the ray leaves, with the outward normal there; a miss if no point of the ray is in the target; or
+    /// undecided.
+    pub outcome: Outcome<RayHit<V>, V>,
+    /// A point of the ray at this parameter, or after it, is in the target; minus infinity if no such point is known.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
+    pub lower: V::Scalar,
+    /// No point of the ray after this parameter is in the target; minus infinity for a miss.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
+    pub upper: V::Scalar,
+    /// How the iteration ended.
+    pub status: Status,
+    /// The number of support points computed.
+    pub iterations: usize,
+}
+
+impl<V: Vector> RayExit<V> {
+    /// Whether the outcome is certain: a hit is if the lower bound is finite, and a miss always.
+    #[must_use]
+    pub fn is_certain(&self) -> bool {
+        self.outcome.is_certain(self.lower > -V::Scalar::infinity())
+    }
+}
+
 compiled_once! {
     /// Where the whole line of the ray leaves a body.
-    fn exit_of_line<V>(body: &mut dyn CastBody<Vector = V>, ray: Ray<V>, options: &RayCastOptions<V>) -> RayExit<V> {
+    fn by_search<V>(body: &mut dyn CastBody<Vector = V>, ray: Ray<V>, options: &RayCastOptions<V>) -> RayExit<V> {
         let infinity = V::Scalar::infinity();
         let wanted = RayCastOptions { min_lambda: Scalar::ZERO, max_lambda: infinity, ..*options };
         let Measures { origin, radius, extent, .. } = body.measures();

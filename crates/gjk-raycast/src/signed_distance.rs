@@ -3,9 +3,8 @@
 use convex_support::{Core, SupportMap, Vector, compiled_once};
 
 use crate::body::{Both, Shapes};
-use crate::extra::Extra;
 use crate::observer::Observer;
-use crate::separation::{Closer, Cores, OfOverlap, Wanted, direct, separation};
+use crate::separation::{Cores, OfOverlap, RareInDistances, Wanted, direct, separation};
 use crate::shape::Shape;
 use crate::{Iterate, SignedDistance, SignedDistanceOptions};
 
@@ -86,7 +85,7 @@ compiled_once! {
         observer: &mut Observer<'_, V>,
     ) -> SignedDistance<V> {
         let axis = options.axis.map(|axis| if is_swapped { -axis } else { axis });
-        let wanted = Wanted::new(OfOverlap::Depth, SignedDistanceOptions { axis, ..options }, Closer::named());
+        let wanted = Wanted::new(OfOverlap::Depth, SignedDistanceOptions { axis, ..options }, Some(&RareInDistances::TABLE));
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, true>(&mut cores, &wanted, observer));
         let mut answer = found.signed_distance(&cores, &wanted);
@@ -104,12 +103,12 @@ compiled_once! {
 pub(crate) fn rough_signed_distance<V: Vector>(
     shapes: &dyn Shapes<Vector = V>,
     options: SignedDistanceOptions<V>,
-    extra: Extra<Closer<V>>,
+    rare: Option<&'static RareInDistances<V>>,
 ) -> SignedDistance<V> {
     let parts = shapes.cores();
     direct(shapes, parts, options.max_iterations, &mut Observer::none()).unwrap_or_else(|| {
         let mut cores = Cores::new(shapes, parts.each_ref());
-        let wanted = Wanted::new(OfOverlap::RoughDepth, options, extra);
+        let wanted = Wanted::new(OfOverlap::RoughDepth, options, rare);
         separation::<_, true>(&mut cores, &wanted, &mut Observer::none()).signed_distance(&cores, &wanted)
     })
 }

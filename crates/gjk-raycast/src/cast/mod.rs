@@ -11,12 +11,12 @@ mod portal;
 mod ray_frame;
 mod start;
 
-use convex_support::{Scalar, Vector};
+use convex_support::{Scalar, Vector, compiled_table};
 use num_traits::Float as _;
 
 use crate::body::{CastBody, PointPair};
-use crate::extra::in_static;
 use crate::observer::Observer;
+use crate::options::{MayBeLean, Rare};
 use crate::simplex::Simplex;
 use crate::{CastMethod, Miss, Outcome, RayCastOptions, Status};
 use algorithm_3::{algorithm_3, touch_beside};
@@ -29,10 +29,11 @@ use portal::portal;
 use start::SettleFn;
 pub(crate) use start::{RayBodies, settle_ends};
 
-/// The searches that are quicker than Algorithm 3 alone, and the second measurement where they leave a doubt.
+/// What a lean ray cast leaves out: the searches that are quicker than Algorithm 3 alone, and the second measurement
+/// where they leave a doubt.
 #[allow(clippy::type_complexity, reason = "the type is written once")]
-pub(crate) struct Quicker<V: Vector> {
-    cast: CastFn<V>,
+pub(crate) struct RareInRayCasts<V: Vector> {
+    cast_by: CastFn<V>,
     settle: SettleFn<V>,
     settle_end: SettleFn<V>,
     touch_beside: fn(&mut Bracket<'_, V>, &Simplex<V>, V, V::Scalar, Option<V>) -> Option<RayContact<V>>,
@@ -41,12 +42,19 @@ pub(crate) struct Quicker<V: Vector> {
 type CastFn<V> =
     fn(&mut dyn CastBody<Vector = V>, CastRay<V>, &RayCastOptions<V>, &mut Observer<'_, V>) -> ObstacleCast<V>;
 
-impl<V: Vector> Quicker<V> {
-    pub(crate) const TABLE: Self =
-        Self { cast: cast_by::<V, true>, settle: start::settle, settle_end: start::settle_end, touch_beside };
-}
+impl<V: Vector> MayBeLean for RayCastOptions<V> {
+    type Table = RareInRayCasts<V>;
+    const TABLE: Self::Table = RareInRayCasts {
+        cast_by: cast_by::<V, true>,
+        settle: start::settle,
+        settle_end: start::settle_end,
+        touch_beside,
+    };
 
-in_static!(Quicker);
+    fn rare() -> Rare<Self> {
+        Rare(Some(compiled_table!(RareInRayCasts<V> of RayCastOptions)))
+    }
+}
 
 /// Support points after which a search with a warm start counts as in doubt.
 const MAX_WARM: usize = 32;
@@ -59,7 +67,7 @@ pub(crate) fn cast<V: Vector>(
     options: &RayCastOptions<V>,
     observer: &mut Observer<'_, V>,
 ) -> ObstacleCast<V> {
-    let cast = options.extra.get().map_or(cast_by::<V, false> as CastFn<V>, |extra| extra.cast);
+    let cast = options.rare.0.map_or(cast_by::<V, false> as CastFn<V>, |rare| rare.cast_by);
     if options.warm_start.is_some() {
         warm_cast(cast, body, ray, options, observer)
     } else {

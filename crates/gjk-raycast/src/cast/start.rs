@@ -38,19 +38,19 @@ pub(crate) fn settle_ends<V: Vector>(
     bodies: RayBodies<'_, V>,
     options: &RayCastOptions<V>,
 ) {
-    let extra = |cast: &ObstacleCast<V>| options.extra.get().filter(|_| cast.iterations < options.max_iterations);
+    let rare = |cast: &ObstacleCast<V>| options.rare.0.filter(|_| cast.iterations < options.max_iterations);
     if cast.is_to_be_settled()
-        && let Some(extra) = extra(cast)
+        && let Some(rare) = rare(cast)
     {
-        (extra.settle)(cast, bodies, options);
+        (rare.settle)(cast, bodies, options);
     }
     let end = options.max_lambda;
     if cast.lower <= end
         && end < cast.upper
         && cast.upper < Float::infinity()
-        && let Some(extra) = extra(cast)
+        && let Some(rare) = rare(cast)
     {
-        (extra.settle_end)(cast, bodies, options);
+        (rare.settle_end)(cast, bodies, options);
     }
     cast.upper = cast.outcome.until(end, cast.upper, |hit| hit.lambda);
 }

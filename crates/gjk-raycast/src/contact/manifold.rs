@@ -5,9 +5,9 @@ use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::clip::{Clipped, ClippedCorners, clip};
+use super::contact_point::MAX_POINTS;
 use super::outline::{ContactPart, ContactPlane, Outline, ROOM};
 use super::reduction::{Candidate, Rank, WORTHWHILE, reduced};
-use super::result::MAX_POINTS;
 use super::surface::{MAX_SUPPORT_POINTS, Side};
 use super::{Contact, ContactPoint};
 use crate::SignedDistance;
@@ -69,43 +69,35 @@ fn single<V: Vector>(answer: &SignedDistance<V>) -> Contact<V> {
 }
 
 compiled_once! {
+    /// [`manifold`] behind pointers. It is computed for the shapes in the order in which the normal points to one side
+    /// of space, so that it is the same, to the last bit, in either order of the call.
     fn by_clipping<V>(
         shapes: [Shape<'_, V>; 2],
         answer: &SignedDistance<V>,
         within: V::Scalar,
         last: &[ContactPoint<V>],
     ) -> Contact<V> {
-        between(shapes, answer, within, last)
+        let [a, b] = shapes;
+        // Along no axis and no diagonal.
+        let aside = V::from_fn(|i| V::Scalar::from_f64([1.0, 0.7549, 0.5698][i]));
+        if answer.normal.dot(aside) < V::Scalar::ZERO {
+            let last: SmallVec<[_; MAX_POINTS]> = last.iter().map(|point| point.reversed()).collect();
+            return by_clipping([b, a], &answer.reversed(), within, &last).reversed();
+        }
+        let normal = answer.normal;
+        let half: V::Scalar = Scalar::from_f64(0.5);
+        let origin = answer.point_a * half + answer.point_b * half;
+        let across = axes_across(normal);
+        let (core_a, core_b) = (a.core(), b.core());
+        let size = core_a.size().min(core_b.size());
+        let reach = Reach::new(answer, within, size);
+        let level = answer.signed_distance * -half;
+        // The closest points may be shifted against each other by the uncertainty of the normal.
+        let levels = [level, level + (answer.upper - answer.lower)];
+        let side = |shape, core, normal| Side::new(shape, core, ContactPlane { normal, across, origin }, levels);
+        let sides = [&mut side(a, &core_a, -normal), &mut side(b, &core_b, normal)];
+        Facing { sides, reach, last }.contact(answer, [level, level])
     }
-}
-
-/// [`manifold`] behind pointers. It is computed for the shapes in the order in which the normal points to one side of
-/// space, so that it is the same, to the last bit, in either order of the call.
-fn between<V: Vector>(
-    [a, b]: [Shape<'_, V>; 2],
-    answer: &SignedDistance<V>,
-    within: V::Scalar,
-    last: &[ContactPoint<V>],
-) -> Contact<V> {
-    // Along no axis and no diagonal.
-    let aside = V::from_fn(|i| V::Scalar::from_f64([1.0, 0.7549, 0.5698][i]));
-    if answer.normal.dot(aside) < V::Scalar::ZERO {
-        let last: SmallVec<[_; MAX_POINTS]> = last.iter().map(|point| point.reversed()).collect();
-        return between([b, a], &answer.reversed(), within, &last).reversed();
-    }
-    let normal = answer.normal;
-    let half: V::Scalar = Scalar::from_f64(0.5);
-    let origin = answer.point_a * half + answer.point_b * half;
-    let across = axes_across(normal);
-    let (core_a, core_b) = (a.core(), b.core());
-    let size = core_a.size().min(core_b.size());
-    let reach = Reach::new(answer, within, size);
-    let level = answer.signed_distance * -half;
-    // The closest points may be shifted against each other by the uncertainty of the normal.
-    let levels = [level, level + (answer.upper - answer.lower)];
-    let side = |shape, core, normal| Side::new(shape, core, ContactPlane { normal, across, origin }, levels);
-    let sides = [&mut side(a, &core_a, -normal), &mut side(b, &core_b, normal)];
-    Facing { sides, reach, last }.contact(answer, [level, level])
 }
 
 compiled_once! {

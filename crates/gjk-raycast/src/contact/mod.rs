@@ -1,10 +1,10 @@
 //! Contact: how far apart two shapes are or how deep in one another, and along which normal.
 
 mod clip;
+mod contact_point;
 mod manifold;
 mod outline;
 mod reduction;
-mod result;
 mod surface;
 
 use convex_support::{SupportMap, Vector};
@@ -12,10 +12,10 @@ use num_traits::Float as _;
 
 use crate::{SignedDistanceOptions, signed_distance};
 pub(crate) use clip::{ClippedCorners, clip, cut};
+pub use contact_point::{Contact, ContactPoint};
 use manifold::manifold;
 pub(crate) use manifold::manifold_over_plane;
 pub(crate) use outline::{ContactPart, ContactPlane, Corner, Ellipse, Outline};
-pub use result::{Contact, ContactPoint};
 pub(crate) use surface::Level;
 
 /// The contact of two shapes; `None` if they are farther apart than `within`. The options are those of the signed

@@ -3,8 +3,8 @@
 use convex_support::Scalar;
 use smallvec::SmallVec;
 
+use super::contact_point::MAX_POINTS;
 use super::outline::ROOM;
-use super::result::MAX_POINTS;
 use crate::symmetric::{Across, cross, way};
 
 /// The part of the area that may be lost, so that among equally good corners the same are kept, whatever the rounding;

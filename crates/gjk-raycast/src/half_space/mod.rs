@@ -4,8 +4,8 @@
 //! that is nearest to it, or deepest in it, is the support point of the shape along `−n`. So its queries are closed
 //! forms of the [height](plane) of this point and the speed at which it sinks.
 
-mod cast;
 mod plane;
+mod straight_casts;
 
 use convex_support::{InvalidShape, Scalar, SupportMap, Vector};
 use num_traits::Float;

@@ -5,7 +5,7 @@ use convex_support::{Matrix as _, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::frame::{LinkFrame, epsilons};
-use super::trajectory::JointState;
+use super::joint_trajectory::JointState;
 use crate::{Pose, axial};
 
 /// A joint of a [`Linkage`](crate::Linkage): its frame in that of its parent, and its motion.

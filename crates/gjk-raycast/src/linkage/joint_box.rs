@@ -30,12 +30,12 @@ use smallvec::SmallVec;
 use super::error::LinkageError;
 use super::frame::epsilons;
 use super::joint::{JointStage, Moving};
+use super::joint_trajectory::{JointBounds, JointState};
 use super::link_motion::Route;
-use super::linkage::Linkage;
-use super::result::FreeBox;
-use super::trajectory::{JointBounds, JointState};
+use super::path_answer::FreeBox;
+use super::robot::Linkage;
 use crate::axial;
-use crate::ray::check_limits;
+use crate::outcome::check_limits;
 use crate::{SignedDistanceOptions, signed_distance};
 
 /// The number of joints whose signs are tried in all combinations. For each joint beyond these, the worst sign is taken

@@ -9,7 +9,7 @@ use num_traits::Float as _;
 
 use super::frame::{LinkFrame, epsilons};
 use super::joint::{JointStage, Moving};
-use super::trajectory::{JointBounds, JointState, JointTrajectory};
+use super::joint_trajectory::{JointBounds, JointState, JointTrajectory};
 use crate::motion::Bounds;
 use crate::{Displacement, Trajectory, TurningPlane};
 

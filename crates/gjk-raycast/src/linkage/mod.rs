@@ -4,18 +4,17 @@ mod error;
 mod frame;
 mod joint;
 mod joint_box;
+mod joint_trajectory;
 mod link_motion;
-#[allow(clippy::module_inception, reason = "it is the type that the folder is about")]
-mod linkage;
 mod path;
-mod result;
+mod path_answer;
+mod robot;
 mod sweep;
-mod trajectory;
 
 pub use error::LinkageError;
 pub use joint::{Joint, JointKind, Link};
 pub use joint_box::{JointBox, JointBoxOutcome};
-pub use linkage::Linkage;
-pub use result::{FreeBox, FreeInterval, Met, Path, PathContact};
+pub use joint_trajectory::{JointBounds, JointState, JointTrajectory};
+pub use path_answer::{FreeBox, FreeInterval, Met, Path, PathContact};
+pub use robot::Linkage;
 pub use sweep::PathWorkspace;
-pub use trajectory::{JointBounds, JointState, JointTrajectory};

@@ -4,11 +4,11 @@ use convex_support::{Core, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::error::LinkageError;
+use super::joint_trajectory::JointTrajectory;
 use super::link_motion::{LinkMotion, PathEdge};
-use super::linkage::{LinkView, Linkage};
-use super::result::{FreeInterval, Met, Path, PathContact, ProvedSteps};
+use super::path_answer::{FreeInterval, Met, Path, PathContact, ProvedSteps};
+use super::robot::{LinkView, Linkage};
 use super::sweep::{Near, PathWorkspace, Sweep};
-use super::trajectory::JointTrajectory;
 use crate::motion::checked;
 use crate::{Body, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene, StartInContact};
 

@@ -14,9 +14,9 @@ use num_traits::Float as _;
 
 use super::frame::{LinkFrame, epsilons};
 use super::joint::Moving;
+use super::joint_trajectory::JointTrajectory;
 use super::link_motion::LinkMotion;
-use super::linkage::{LinkView, Skeleton};
-use super::trajectory::JointTrajectory;
+use super::robot::{LinkView, Skeleton};
 use crate::RayCastError;
 use crate::half_space::Plane;
 use crate::motion::Bounds;

@@ -1,4 +1,4 @@
-//! The search for the first contact of two moving bodies.
+//! The search for the first contact of two moving bodies, its options and its answer.
 //!
 //! The search proves free intervals, one after the other from time 0 on ([`free_interval`](super::free_interval)). How
 //! it chooses their ends decides only how many there are. Far from contact the end is put as far away as can be
@@ -12,7 +12,8 @@ use num_traits::Float as _;
 use super::free_interval::acceleration_if_free;
 use super::instant::{Approach, Base, Instant, Limits, NEAR, Stage};
 use super::trajectory::TurningPlane;
-use crate::{Impact, Miss, MotionCast, MotionCastOptions, MotionIterate, Outcome, StartInContact, Status};
+use crate::options::{MayBeLean as _, Rare, options};
+use crate::{Cast, Impact, LinearCastOptions, Miss, Outcome, StartInContact, Status, WarmStart};
 
 /// The distance at which the search for a contact aims, in units of the error of the distance. It is on the near side
 /// of the contact, and hardly nearer than can be told from it.
@@ -31,6 +32,101 @@ const GRAZE: f64 = 16.0;
 /// If the normal has turned in a step by more than the root of this, in radians, the next step is not expected to be
 /// like it.
 const FAR: f64 = 0.25;
+
+/// Times to examine in a motion cast, after which to give up. A contact takes about ten, and each turn near another
+/// body about as many; bodies that spin for long very near one another take the most.
+const MAX_LOOKS: usize = 10_000;
+
+/// Options of [`motion_cast`](crate::motion_cast).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct MotionCastOptions<V: Vector> {
+    /// The end of the motion; it belongs to the motion. A negative value is taken for zero. Default: infinity. Set an
+    /// end if a body spins: no finite search can prove that a spinning body never touches another one, and the answer
+    /// is undecided after [`max_iterations`](Self::max_iterations).
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub max_time: V::Scalar,
+    /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
+    /// of rounding always ends the search. Default: 0.
+    pub tolerance: V::Scalar,
+    /// The distance at which bodies count as touching: the cast stops that far from contact. A negative value is taken
+    /// for zero. Default: 0.
+    pub target_distance: V::Scalar,
+    /// What to answer if the bodies touch at the start. Default: [`StartInContact::Report`].
+    pub start_in_contact: StartInContact,
+    /// A first guess of the direction from `b` to `a` at the start, such as the axis of the last miss. Default: none.
+    pub axis: Option<V>,
+    /// The number of times to examine, after which to give up; each takes a few support points, which
+    /// [`MotionCast::iterations`](crate::MotionCast::iterations) counts. Default: 10 000.
+    pub max_iterations: usize,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) rare: Rare<Self>,
+}
+
+impl<V: Vector> Default for MotionCastOptions<V> {
+    fn default() -> Self {
+        Self { rare: Self::rare(), ..Self::lean() }
+    }
+}
+
+impl<V: Vector> MotionCastOptions<V> {
+    /// The default options, with no machine code besides GJK, closed forms, and the closest points of the last time: a
+    /// program in which all options are lean has under two fifths of the code for motion casts.
+    ///
+    /// The search then does without the shortest way out of an overlap, the facets of two boxes, the proof that bodies
+    /// without an inside have passed through one another, and the linear cast, so that motions that do not turn are
+    /// searched like those that do. It takes more support points, the bracket may be wider, and a contact that is not
+    /// certain, or a graze, may be undecided where the default options decide. With [`StartInContact::IfDeeper`], a
+    /// start that may be in contact may be undecided too.
+    #[must_use]
+    pub fn lean() -> Self {
+        Self {
+            max_time: V::Scalar::infinity(),
+            tolerance: V::Scalar::ZERO,
+            target_distance: V::Scalar::ZERO,
+            start_in_contact: StartInContact::Report,
+            axis: None,
+            max_iterations: MAX_LOOKS,
+            rare: Rare(None),
+        }
+    }
+
+    /// The options of the linear cast for a motion that does not turn, without the machine code they name.
+    pub(crate) fn straight(&self) -> LinearCastOptions<V> {
+        let &Self { max_time, tolerance, target_distance, start_in_contact, axis, max_iterations, .. } = self;
+        let warm_start = axis.map(WarmStart::new);
+        let lean = LinearCastOptions::lean();
+        LinearCastOptions { max_time, tolerance, target_distance, start_in_contact, warm_start, max_iterations, ..lean }
+    }
+}
+
+options! {
+    MotionCastOptions: with_max_time(max_time: V::Scalar), with_tolerance(tolerance: V::Scalar),
+    with_target_distance(target_distance: V::Scalar), with_start_in_contact(start_in_contact: StartInContact),
+    with_axis(axis: V => axis = Some(axis)), with_max_iterations(max_iterations: usize)
+}
+
+/// The answer of [`motion_cast`](crate::motion_cast).
+pub type MotionCast<V> = Cast<Impact<V>, V>;
+
+/// The state of a motion cast that an observer sees at every time examined.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionIterate<V: Vector> {
+    /// Counts from 0.
+    pub iteration: usize,
+    /// The time examined.
+    pub time: V::Scalar,
+    /// The certain distance of a separating plane between the bodies then; not positive if none is known.
+    pub gap: V::Scalar,
+    /// The unit normal of that plane, from `b` to `a`.
+    pub normal: V,
+    /// The bodies have no point in common up to this time.
+    pub lower: V::Scalar,
+    /// The bodies have a point in common at this time; infinite if none is known.
+    pub upper: V::Scalar,
+}
 
 /// The state of the search. Up to the time of [`near`](Self::near) the bodies are proved to be apart.
 pub(super) struct Search<'p, V: Vector> {
@@ -76,11 +172,15 @@ pub(super) enum MotionEnd<V> {
     Undecided(Status),
 }
 
+/// How a search begins in contact if only deeper motions count.
+pub(super) type Begin<V> = fn(&mut Search<'_, V>) -> MotionEnd<V>;
+
 impl<'p, V: Vector> Search<'p, V> {
     /// The first contact of two bodies up to the end of the motion.
     pub(super) fn run(
         bodies: &'p dyn Approach<V>,
         options: MotionCastOptions<V>,
+        begin_in_contact: Option<Begin<V>>,
         observer: &'p mut dyn FnMut(MotionIterate<V>),
     ) -> MotionCast<V> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
@@ -121,10 +221,9 @@ impl<'p, V: Vector> Search<'p, V> {
         let end = match options.start_in_contact {
             _ if near.gap > zero => search.advance(),
             StartInContact::Report => search.start_in_contact(),
-            StartInContact::IfDeeper => match options.extra.get() {
-                Some(extra) => (extra.begin_in_contact)(&mut search),
-                None => MotionEnd::Undecided(Status::Stalled),
-            },
+            StartInContact::IfDeeper => {
+                begin_in_contact.map_or(MotionEnd::Undecided(Status::Stalled), |begin| begin(&mut search))
+            }
         };
         search.answer(end)
     }

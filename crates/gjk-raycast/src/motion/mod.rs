@@ -20,9 +20,9 @@ mod trajectory;
 
 pub(crate) use chain_motion::Bounds;
 pub use chain_motion::ChainMotion;
+pub use first_contact::{MotionCast, MotionCastOptions, MotionIterate};
 pub(crate) use motion_cast::{check, checked};
 pub use motion_cast::{motion_cast, motion_cast_with};
-pub(crate) use moving_pair::FullMotion;
 pub(crate) use placed::Moved;
 pub use rigid_motion::Pose;
 pub use trajectory::{Displacement, MovingBall, RigidMotion, Trajectory, TurningPlane};

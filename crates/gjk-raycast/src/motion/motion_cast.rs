@@ -1,15 +1,14 @@
-//! The first contact of two bodies that move and turn, and its options.
-
-use convex_support::{AngularVelocity, Scalar, SupportMap, Vector, compiled_once};
-use num_traits::Float as _;
+//! The first contact of two bodies that move and turn.
 
 use super::first_contact::Search;
 use super::moving_pair::MovingPair;
 use super::trajectory::{RigidMotion, Trajectory};
 use crate::body::{Both, Shapes};
 use crate::linear_cast::as_body;
-use crate::ray::{check_finite, check_limits, check_numbers};
+use crate::outcome::{check_finite, check_limits, check_numbers};
 use crate::{Motion, MotionCast, MotionCastOptions, MotionIterate, RayCastError};
+use convex_support::{AngularVelocity, Scalar, SupportMap, Vector, compiled_once};
+use num_traits::Float as _;
 
 /// The first contact of two moving bodies, which may turn: its time, point and normal.
 ///
@@ -86,26 +85,27 @@ where
         if alike || !(turns(&rigid_a) || turns(&rigid_b)) {
             let velocity = |motion: RigidMotion<A::Vector>| if alike { A::Vector::ZERO } else { motion.velocity };
             let motion = Motion { velocity_a: velocity(rigid_a), velocity_b: velocity(rigid_b) };
-            if let Some(extra) = options.extra.get() {
+            if let Some(rare) = options.rare.0 {
                 let cast = as_body(a, b, options.target_distance, |body, shapes, cores| {
-                    (extra.straight)(body, shapes, cores, motion, &options.straight())
+                    (rare.straight)(body, shapes, cores, motion, &options.straight())
                 });
                 return Ok(MotionCast { lower: cast.lower.min(options.max_time), ..cast });
             }
         }
     }
-    Ok(first_contact(&Both::<_, _>::new(a, b), [&motion_a, &motion_b], options, &mut observer))
+    Ok(by_search(&Both::<_, _>::new(a, b), [&motion_a, &motion_b], options, &mut observer))
 }
 
 compiled_once! {
     /// The first contact of bodies that turn.
-    fn first_contact<V>(
+    fn by_search<V>(
         shapes: &dyn Shapes<Vector = V>,
         motions: [&dyn Trajectory<Vector = V>; 2],
         options: MotionCastOptions<V>,
         observer: &mut dyn FnMut(MotionIterate<V>),
     ) -> MotionCast<V> {
-        Search::run(&MovingPair::new(shapes, motions, &options), options, observer)
+        let begin_in_contact = options.rare.0.map(|rare| rare.begin_in_contact);
+        Search::run(&MovingPair::new(shapes, motions, &options), options, begin_in_contact, observer)
     }
 }
 

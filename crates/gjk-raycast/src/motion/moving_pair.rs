@@ -1,24 +1,23 @@
-//! Two bodies and their motions, and the table of functions that the search for their contact uses beyond its leanest
-//! form.
+//! Two bodies and their motions, and the table of functions that a lean search for their contact leaves out.
 
 use core::cell::{Cell, RefCell};
 
 use convex_support::numerics::range::is_comfortable;
-use convex_support::{Core, Hint, Scalar, Vector};
+use convex_support::{Core, Hint, Scalar, Vector, compiled_table};
 use num_traits::Float;
 
-use super::first_contact::{MotionEnd, Search};
+use super::first_contact::Begin;
 use super::instant::{Approach, Instant, Limits};
 use super::moving_body::{Block, MovingBody};
 use super::placed::{BodyFrameCorners, Placed};
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::body::{CastBody, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::distance::distance_of_any;
-use crate::extra::{Extra, in_static};
 use crate::gjk::rounding;
-use crate::linear_cast::{AtStart, by_search};
+use crate::linear_cast::by_search;
 use crate::observer::Observer;
-use crate::separation::Closer;
+use crate::options::{MayBeLean, Rare};
+use crate::separation::RareInDistances;
 use crate::shape::Shape;
 use crate::signed_distance::rough_signed_distance;
 use crate::unit::{is_moderate, length_bound, lost_to_underflow};
@@ -27,7 +26,7 @@ use crate::{DistanceOptions, LinearCast, LinearCastOptions, Motion, MotionCastOp
 /// Two bodies and their motions.
 pub(super) struct MovingPair<'s, V: Vector> {
     pub(super) shapes: &'s dyn Shapes<Vector = V>,
-    extra: Extra<FullMotion<V>>,
+    rare: Option<&'static RareInMotionCasts<V>>,
     /// The hints of the last time, which mostly fit again.
     pub(super) hints: Cell<[Hint; 2]>,
     pub(super) a: MovingBody<'s, V>,
@@ -44,10 +43,10 @@ pub(super) struct MovingPair<'s, V: Vector> {
     iterations: Cell<usize>,
 }
 
-/// The functions that a search uses besides GJK and the points that were closest at the last look.
+/// What a lean motion cast leaves out: all but GJK and the points that were closest at the last look.
 #[allow(clippy::type_complexity, reason = "the type is written once")]
-pub(crate) struct FullMotion<V: Vector> {
-    closer: &'static Closer<V>,
+pub(crate) struct RareInMotionCasts<V: Vector> {
+    in_distances: &'static RareInDistances<V>,
     /// The cast of bodies that do not turn.
     pub(super) straight: fn(
         &mut dyn CastBody<Vector = V>,
@@ -57,16 +56,17 @@ pub(crate) struct FullMotion<V: Vector> {
         &LinearCastOptions<V>,
     ) -> LinearCast<V>,
     by_boxes: fn(&MovingPair<'_, V>, V::Scalar, &[Block<V>; 2], V, Limits<V::Scalar>, bool) -> Option<Instant<V>>,
-    pub(super) begin_in_contact: fn(&mut Search<'_, V>) -> MotionEnd<V>,
+    pub(super) begin_in_contact: Begin<V>,
     keep_in_contact: fn(&MovingPair<'_, V>, &Instant<V>, &Instant<V>, V::Scalar) -> bool,
     have_met: fn(&MovingPair<'_, V>, &Instant<V>, V::Scalar) -> bool,
 }
 
-impl<V: Vector> FullMotion<V> {
-    const TABLE: Self = Self {
-        closer: &Closer::TABLE,
+impl<V: Vector> MayBeLean for MotionCastOptions<V> {
+    type Table = RareInMotionCasts<V>;
+    const TABLE: Self::Table = RareInMotionCasts {
+        in_distances: &DistanceOptions::TABLE,
         straight: |body, shapes, cores, motion, options| {
-            let options = LinearCastOptions { extra: AtStart::named(), ..*options };
+            let options = LinearCastOptions { rare: LinearCastOptions::rare(), ..*options };
             by_search(body, shapes, cores, motion, &options, &mut Observer::none())
         },
         by_boxes: |pair, time, blocks, axis, limits, is_close| pair.by_boxes(time, blocks, axis, limits, is_close),
@@ -74,9 +74,11 @@ impl<V: Vector> FullMotion<V> {
         keep_in_contact: |pair, from, to, depth| pair.keep_in_contact(from, to, depth),
         have_met: |pair, near, time| pair.have_met(near, time),
     };
-}
 
-in_static!(FullMotion);
+    fn rare() -> Rare<Self> {
+        Rare(Some(compiled_table!(RareInMotionCasts<V> of MotionCastOptions)))
+    }
+}
 
 impl<'s, V: Vector> MovingPair<'s, V> {
     #[inline(always)]
@@ -85,7 +87,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         motions: [&'s dyn Trajectory<Vector = V>; 2],
         options: &MotionCastOptions<V>,
     ) -> Self {
-        let extra = options.extra;
+        let rare = options.rare.0;
         let [a, b] = shapes.each();
         let a = MovingBody::new(a, motions[0], options.target_distance);
         let b = MovingBody::new(b, motions[1], Scalar::ZERO);
@@ -93,11 +95,11 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         let pair = Pair::new(shapes, [&a.core, &b.core]);
         let knows_points = pair.closest_points(offset, pair.size(offset)).is_some();
         let blocks = || Some([Block::of(a.shape, &a.core)?, Block::of(b.shape, &b.core)?]);
-        let boxes = if knows_points || extra.get().is_none() { None } else { blocks() };
+        let boxes = if knows_points || rare.is_none() { None } else { blocks() };
         let facet = Cell::new(None);
         let (closest, iterations) = (RefCell::new(BodyFrameCorners::none()), Cell::new(0));
         let hints = Cell::new([Hint::new(), Hint::new()]);
-        Self { shapes, extra, hints, a, b, knows_points, boxes, facet, closest, iterations }
+        Self { shapes, rare, hints, a, b, knows_points, boxes, facet, closest, iterations }
     }
 
     /// Adds to the number of support points.
@@ -138,7 +140,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
     /// The bodies at a time, if both are boxes.
     #[inline(always)]
     fn by_facets(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>, is_close: bool) -> Option<Instant<V>> {
-        (self.extra.get()?.by_boxes)(self, time, self.boxes.as_ref()?, axis, limits, is_close)
+        (self.rare?.by_boxes)(self, time, self.boxes.as_ref()?, axis, limits, is_close)
     }
 
     /// The bodies at a time, if neither closed form tells enough: by GJK, if a rough answer will do; by the corners
@@ -157,9 +159,9 @@ impl<'s, V: Vector> MovingPair<'s, V> {
     /// The bodies at a time, by their signed distance.
     #[inline(never)]
     fn by_signed_distance(&self, placed: &Placed<'_, V>, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
-        let wanted =
-            SignedDistanceOptions::new().with_axis(axis).with_limit(limits.distance).with_depth_limit(limits.depth);
-        let answer = rough_signed_distance(placed, wanted, self.extra.part(|extra| extra.closer));
+        let Limits { distance: limit, depth: depth_limit } = limits;
+        let wanted = SignedDistanceOptions { axis: Some(axis), limit, depth_limit, ..Default::default() };
+        let answer = rough_signed_distance(placed, wanted, self.rare.map(|rare| rare.in_distances));
         self.count(answer.iterations);
         let (point_a, point) = (answer.point_a + placed.place, answer.point_b + placed.place);
         let (time, normal, distance) = (placed.time, answer.normal, answer.signed_distance);
@@ -263,7 +265,7 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
     }
 
     fn stay_in_contact(&self, from: &Instant<V>, to: &Instant<V>, depth: V::Scalar) -> bool {
-        self.extra.get().is_some_and(|extra| (extra.keep_in_contact)(self, from, to, depth))
+        self.rare.is_some_and(|rare| (rare.keep_in_contact)(self, from, to, depth))
     }
 
     fn velocities(&self, time: V::Scalar, point: V) -> [V; 2] {
@@ -271,7 +273,7 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
     }
 
     fn pass_through(&self, near: &Instant<V>, time: V::Scalar) -> bool {
-        self.extra.get().is_some_and(|extra| (extra.have_met)(self, near, time))
+        self.rare.is_some_and(|rare| (rare.have_met)(self, near, time))
     }
 
     /// This is not the point of `b` that is deepest in `a`: if a small body has to leave through a large one, that
@@ -280,7 +282,8 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
     #[inline(never)]
     fn common_point(&self, there: &Instant<V>) -> V {
         let placed = self.placed(there.time);
-        let wanted = DistanceOptions { extra: self.extra.part(|extra| extra.closer), ..DistanceOptions::lean() };
+        let rare = Rare(self.rare.map(|rare| rare.in_distances));
+        let wanted = DistanceOptions { rare, ..DistanceOptions::lean() };
         let answer = distance_of_any(&placed.a, &placed.b, wanted);
         self.count(answer.iterations);
         answer.point_b + placed.place

@@ -74,13 +74,13 @@ impl<V: Vector> HalfSpace<V> {
             let cast = self.linear_cast(shape, motion, options.straight())?;
             return Ok(MotionCast { lower: cast.lower.min(options.max_time), ..cast });
         }
-        Ok(first_contact(&WithoutLines(shape), &motion, self, options, &mut observer))
+        Ok(by_search(&WithoutLines(shape), &motion, self, options, &mut observer))
     }
 }
 
 compiled_once! {
     /// The first contact of a body that turns.
-    fn first_contact<V>(
+    fn by_search<V>(
         shape: Shape<'_, V>,
         motion: &dyn Trajectory<Vector = V>,
         half_space: &HalfSpace<V>,
@@ -90,7 +90,8 @@ compiled_once! {
         let margin = options.target_distance;
         let (body, plane) = (MovingBody::new(shape, motion, margin), half_space.plane());
         let (iterations, hint) = (Cell::new(0), Cell::new(Hint::new()));
-        Search::run(&OverHalfSpace { body, margin, plane, iterations, hint }, options, observer)
+        let begin_in_contact = options.rare.0.map(|rare| rare.begin_in_contact);
+        Search::run(&OverHalfSpace { body, margin, plane, iterations, hint }, options, begin_in_contact, observer)
     }
 }
 

@@ -7,7 +7,7 @@ use convex_support::{Point, Scalar as _, ScalarOf, SupportMap, Vector as _};
 use num_traits::Float as _;
 
 use super::among::Among;
-use super::result::{BodyContact, PairContact, Work, reuse};
+use super::answers::{BodyContact, PairContact, Work, reuse};
 use super::{Body, Scene};
 use crate::contact::contact_of;
 use crate::{Contact, SignedDistanceOptions, signed_distance};

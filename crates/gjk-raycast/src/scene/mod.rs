@@ -1,13 +1,13 @@
 //! Questions about many bodies, of which few need a query.
 
 pub(crate) mod among;
+mod answers;
 mod body;
 mod bounds;
-mod cast;
 mod contacts;
+mod hits;
 mod nearest;
 mod pairs;
-mod result;
 
 use alloc::vec::Vec;
 use core::error::Error;
@@ -17,11 +17,11 @@ use convex_support::{Aabb, Bvh, SupportMap, Triangle, Vector, Vector3, outer_box
 
 use crate::HalfSpace;
 
-pub use self::body::Body;
-pub use self::result::{
+pub use self::answers::{
     BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, SceneAnyHit, SceneCast,
     SceneDistance, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, SceneSignedDistance, Work,
 };
+pub use self::body::Body;
 
 /// A set of bodies with a tree of their boxes, for questions such as the first hit, the nearest body, or all near
 /// pairs.

@@ -9,7 +9,7 @@ use num_traits::Float;
 
 use super::Body;
 use super::among::Among;
-use super::result::{BodyDistance, BodySignedDistance, SceneDistance, SceneSignedDistance, Work, reuse};
+use super::answers::{BodyDistance, BodySignedDistance, SceneDistance, SceneSignedDistance, Work, reuse};
 use crate::{DistanceOptions, SignedDistanceOptions};
 
 impl<S: SupportMap> Among<'_, S> {

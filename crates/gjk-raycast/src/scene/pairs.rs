@@ -6,8 +6,8 @@ use core::ops::ControlFlow;
 use convex_support::{PairSearch, ScalarOf, SupportMap, Vector};
 
 use super::among::Among;
+use super::answers::{PairContact, PairDistance, Work, reuse};
 use super::bounds::HeightBound;
-use super::result::{PairContact, PairDistance, Work, reuse};
 use super::{Body, Scene};
 use crate::{DistanceOptions, distance};
 

@@ -6,6 +6,7 @@
 
 mod boundary;
 mod cores;
+mod distances;
 mod expansion;
 mod faces;
 mod near_contact;
@@ -20,12 +21,12 @@ use convex_support::{Core, Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Pair, PointPair, Shapes, TracedSupport as _};
-use crate::extra::{Extra, in_static};
 use crate::gjk::{End, Gjk, rounding};
 use crate::observer::Observer;
-use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, Status, SubAlgorithm};
+use crate::{Iterate, Status, SubAlgorithm};
 pub(crate) use cores::Cores;
 use cores::{ClosedForm, WayOut};
+pub use distances::{Distance, SignedDistance, SignedDistanceOptions};
 use expansion::{Expanded, expand};
 pub(crate) use faces::{ProjectedFace, is_around_zero};
 use near_contact::NEAR;
@@ -43,23 +44,21 @@ pub(crate) struct Wanted<V: Vector> {
     /// How wide a bracket on the distance may stay, relative to it.
     pub(crate) tolerance: V::Scalar,
     pub(crate) sub_algorithm: SubAlgorithm,
-    /// The further means if GJK does not decide.
-    pub(crate) extra: Extra<Closer<V>>,
+    pub(crate) rare: Option<&'static RareInDistances<V>>,
 }
 
-/// The second and the third means of the search. Without them the answer is that of GJK.
+/// What a lean distance leaves out: the second and the third means of the search. Without them the answer is that of
+/// GJK.
 #[allow(clippy::type_complexity, reason = "the type is written once")]
-pub(crate) struct Closer<V: Vector> {
+pub(crate) struct RareInDistances<V: Vector> {
     look_near: fn(&mut Cores<'_, V>, &Wanted<V>, Option<&Gjk<V>>) -> bool,
-    reach: fn(&mut Cores<'_, V>, &Wanted<V>, &mut Gjk<V>, End, &mut Observer<'_, V>) -> Separation<V>,
+    reach_closely: fn(&mut Cores<'_, V>, &Wanted<V>, &mut Gjk<V>, End, &mut Observer<'_, V>) -> Separation<V>,
 }
 
-impl<V: Vector> Closer<V> {
+impl<V: Vector> RareInDistances<V> {
     pub(crate) const TABLE: Self =
-        Self { look_near: |cores, wanted, state| cores.look_near(wanted, state), reach: reach_closely };
+        Self { look_near: |cores, wanted, state| cores.look_near(wanted, state), reach_closely };
 }
-
-in_static!(Closer);
 
 /// The question about bodies that overlap.
 #[derive(Clone, Copy, PartialEq)]
@@ -73,8 +72,12 @@ pub(crate) enum OfOverlap {
 
 impl<V: Vector> Wanted<V> {
     #[inline(always)]
-    pub(crate) fn new(of_overlap: OfOverlap, options: SignedDistanceOptions<V>, extra: Extra<Closer<V>>) -> Self {
-        Self { of_overlap, options, tolerance: Scalar::ZERO, sub_algorithm: SubAlgorithm::Regions, extra }
+    pub(crate) fn new(
+        of_overlap: OfOverlap,
+        options: SignedDistanceOptions<V>,
+        rare: Option<&'static RareInDistances<V>>,
+    ) -> Self {
+        Self { of_overlap, options, tolerance: Scalar::ZERO, sub_algorithm: SubAlgorithm::Regions, rare }
     }
 
     /// Whether there is a further question about bodies that overlap.
@@ -93,7 +96,7 @@ impl<V: Vector> Wanted<V> {
 
     /// The same question for the search of any query.
     fn plain(&self) -> Self {
-        Self::new(self.of_overlap, SignedDistanceOptions { axis: None, ..self.options }, self.extra)
+        Self::new(self.of_overlap, SignedDistanceOptions { axis: None, ..self.options }, self.rare)
     }
 }
 
@@ -124,7 +127,7 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     observer: &mut Observer<'_, V>,
 ) -> Separation<V> {
     debug_assert_eq!(IS_DEPTH, wanted.is_depth(), "the constant must agree with the wanted answer");
-    let (options, extra) = (&wanted.options, wanted.extra.get());
+    let (options, rare) = (&wanted.options, wanted.rare);
     if IS_DEPTH {
         // Rounded cores are mostly apart, which only a search can tell.
         let is_rounded = cores.radius() > Scalar::ZERO;
@@ -142,7 +145,7 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     }
     let closest = cores.closest_points();
     let tells_all = |cores: &mut Cores<'_, V>, state: Option<&Gjk<V>>| {
-        extra.is_some_and(|extra| (extra.look_near)(cores, wanted, state))
+        rare.is_some_and(|rare| (rare.look_near)(cores, wanted, state))
     };
     // If the closest points are known, there is nothing to search near contact.
     let mut is_near = closest.is_some_and(|(_, v)| cores.is_near(v.length()));
@@ -155,7 +158,7 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     let mut state = cores.first_state(options.axis);
     let end = cores.approach(wanted, &mut state, closest, observer);
     is_near |= closest.is_none() && cores.are_near(&mut state);
-    if is_near && !IS_DEPTH && extra.is_some() && !wanted.is_plain() {
+    if is_near && !IS_DEPTH && rare.is_some() && !wanted.is_plain() {
         // Where rounding decides, it has to decide alike wherever a query begins.
         return separation::<V, IS_DEPTH>(cores, &wanted.plain(), observer);
     }
@@ -169,10 +172,10 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     let is_known = if IS_DEPTH {
         end == End::Separated && cores.is_well_apart(state.length)
     } else {
-        end != End::Stalled && !(is_near && (extra.is_none() || cores.near.is_some()))
+        end != End::Stalled && !(is_near && (rare.is_none() || cores.near.is_some()))
     };
-    if !is_known && let Some(extra) = extra {
-        return (extra.reach)(cores, wanted, &mut state, end, observer);
+    if !is_known && let Some(rare) = rare {
+        return (rare.reach_closely)(cores, wanted, &mut state, end, observer);
     }
     let mut known = Separation::of_gjk(cores, &mut state, end);
     let is_full = end == End::Overlap && state.simplex.points().len() > V::DIM;
@@ -214,7 +217,7 @@ fn reach_closely<V: Vector>(
             end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
         if may_repeat && !cores.is_peeled() && cores.peel() {
             *state = cores.first_state(options.axis);
-            let wanted = Wanted::new(OfOverlap::Depth, *options, wanted.extra);
+            let wanted = Wanted::new(OfOverlap::Depth, *options, wanted.rare);
             end = cores.approach(&wanted, state, None, observer);
         }
         if !cores.is_well_apart(state.length) {

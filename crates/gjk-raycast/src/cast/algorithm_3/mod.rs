@@ -74,7 +74,7 @@ pub(super) fn algorithm_3<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Ray
             simplex.retain(face, weights);
             let contact = bracket.close_at_low(to_x, simplex.weighted_witness()).ok_or(Stop::InDoubt)?;
             // Mostly a second measurement finds more.
-            if bracket.options.extra.get().is_none() && is_inside(bracket, &simplex, x) {
+            if bracket.options.rare.0.is_none() && is_inside(bracket, &simplex, x) {
                 bracket.enter_for_certain(contact.mu);
             }
             return Ok(contact);
@@ -143,7 +143,7 @@ fn look_beside<V: Vector>(
     within: V::Scalar,
     normal: Option<V>,
 ) -> Option<RayContact<V>> {
-    (bracket.options.extra.get()?.touch_beside)(bracket, simplex, v, within, normal)
+    (bracket.options.rare.0?.touch_beside)(bracket, simplex, v, within, normal)
 }
 
 /// The contact if the line comes within rounding of the simplex without entering it ahead of x.

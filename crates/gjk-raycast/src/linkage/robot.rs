@@ -12,9 +12,9 @@ use num_traits::Float;
 use super::error::LinkageError;
 use super::frame::{LinkFrame, epsilons};
 use super::joint::{Joint, JointKind, JointStage, Link, Moving};
+use super::joint_trajectory::JointTrajectory as _;
 use super::link_motion::{PathEdge, Route};
-use super::result::{Met, PathContact};
-use super::trajectory::JointTrajectory as _;
+use super::path_answer::{Met, PathContact};
 use crate::{Impact, axial};
 
 /// A robot: links, each of some bodies, carried by joints in a tree.

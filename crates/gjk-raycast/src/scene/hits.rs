@@ -7,11 +7,11 @@ use convex_support::{Aabb, Bound, Scalar, ScalarOf, SupportMap, SweptBox, Vector
 use num_traits::Float;
 
 use super::among::Among;
-use super::body::seen_from;
-use super::bounds::MovingBalls;
-use super::result::{
+use super::answers::{
     BodyHit, SceneAnyHit, SceneCast, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, reuse,
 };
+use super::body::seen_from;
+use super::bounds::MovingBalls;
 use super::{Body, Work};
 use crate::motion::{check, checked};
 use crate::{
