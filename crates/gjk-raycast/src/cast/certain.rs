@@ -45,7 +45,7 @@ pub(crate) fn certain<V: Vector>(
             // infinity decide nothing.
             if (earliest > zero) & (latest <= last_number(options.max_lambda)) {
                 (Outcome::Hit(RayHit { lambda: entry, point: ray.at(entry), normal: Some(normal) }), bounds)
-            } else if (earliest > options.max_lambda) & (latest < infinity) & (normal.dot(ray.direction) < zero) {
+            } else if (earliest > options.max_lambda) & (latest < infinity) && normal.dot(ray.direction) < zero {
                 // At a rim the normal may be that of a side that the ray does not cross, and then tells nothing.
                 missed(normal)
             } else {

@@ -29,6 +29,11 @@ const DEPTH: f64 = 2.0;
 /// stopped before the graze: only then can it be seen whether they have passed through one another.
 const GRAZE: f64 = 16.0;
 
+/// How deep the bodies may be at the upper bound of a converged answer: so many roundings of their size, or so many
+/// errors of their distance. It is half of what `docs/evidence.md` says of both bounds.
+const NARROW: f64 = 512.0;
+const NARROW_OF_ERROR: f64 = 8.0;
+
 /// If the normal has turned in a step by more than the root of this, in radians, the next step is not expected to be
 /// like it.
 const FAR: f64 = 0.25;
@@ -426,21 +431,20 @@ impl<'p, V: Vector> Search<'p, V> {
     /// Whether the bodies are no deeper at the upper bound, or have sunk no more until then, than a converged answer may
     /// leave open: by their speed, or else by the plane of the last time at which they are apart.
     fn is_narrow(&self) -> bool {
-        let (number, Instant { time, normal, gap, closing, .. }) = (V::Scalar::from_f64, self.near);
+        let (number, Instant { time, normal, gap, error, closing, .. }) = (V::Scalar::from_f64, self.near);
         let (zero, width, size) = (V::Scalar::ZERO, self.upper - time, self.bodies.size());
+        let narrow = (size * V::Scalar::EPSILON * number(NARROW)).max(error * number(NARROW_OF_ERROR))
+            + size * self.options.tolerance;
         if width <= zero {
             return true;
         }
-        let tolerance = size * self.options.tolerance;
         let most = self.bodies.acceleration_along(TurningPlane { from: normal, to: normal }, [time, self.upper]);
-        let sunk = width * (closing + most * width * number(0.5)) - gap.min(zero);
-        if sunk <= size * V::Scalar::EPSILON * number(64.0) + tolerance {
+        if width * (closing + most * width * number(0.5)) - gap.min(zero) <= narrow {
             return true;
         }
         let before = if self.base.stage == Stage::Apart { zero } else { self.bodies.level(time, normal).0 };
-        let (after, error) = self.bodies.level(self.upper, normal);
         // NaN is not narrow.
-        before - after <= error * number(8.0) + tolerance
+        before - self.bodies.level(self.upper, normal).0 <= narrow
     }
 
     fn answer(&self, end: MotionEnd<V>) -> MotionCast<V> {
