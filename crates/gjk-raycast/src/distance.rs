@@ -167,8 +167,7 @@ compiled_once! {
         let limit = if limit < Scalar::ZERO { Scalar::ZERO } else { limit };
         // How deep bodies are that certainly overlap is not asked.
         let depth_limit = Scalar::ZERO;
-        let of_separation =
-            SignedDistanceOptions { limit, depth_limit, max_iterations, axis, ..Default::default() };
+        let of_separation = SignedDistanceOptions { limit, depth_limit, max_iterations, axis, ..Default::default() };
         let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation, rare.0) };
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, false>(&mut cores, &wanted, observer));

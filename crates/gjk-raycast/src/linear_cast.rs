@@ -1,7 +1,7 @@
 //! The first contact of two shapes that move without turning.
 
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
+use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once, compiled_table};
 use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
@@ -10,6 +10,7 @@ use crate::observer::Observer;
 use crate::options::{MAX_ITERATIONS, MayBeLean, Rare, options};
 use crate::outcome::{check_finite, check_limits};
 use crate::shape::Shape;
+use crate::start_in_contact::{Later, RareInLinearCasts, StartingPair};
 use crate::{
     Cast, CastMethod, Impact, Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RigidMotion,
     StartInContact, Status, SubAlgorithm, WarmStart,
@@ -192,6 +193,15 @@ impl<V: Vector> LinearCastOptions<V> {
     }
 }
 
+impl<V: Vector> MayBeLean for LinearCastOptions<V> {
+    type Table = RareInLinearCasts<V>;
+    const TABLE: Self::Table = RareInLinearCasts::TABLE;
+
+    fn rare() -> Rare<Self> {
+        Rare(Some(compiled_table!(RareInLinearCasts<V> of LinearCastOptions)))
+    }
+}
+
 options! {
     LinearCastOptions: with_max_time(max_time: V::Scalar), with_target_distance(target_distance: V::Scalar),
     with_start_in_contact(start_in_contact: StartInContact), with_tolerance(tolerance: V::Scalar),
@@ -285,14 +295,16 @@ fn answer<V: Vector>(
     };
     let &ObstacleCast { lower, upper, status, iterations, .. } = cast;
     let mut answer = LinearCast { outcome, lower, upper, status, iterations };
-    let mut start = StartingPair { a, b, target, slack: zero };
+    let (velocities, axis) = ([motion.velocity_a, motion.velocity_b], options.warm_start.map(|warm| warm.axis));
+    let &LinearCastOptions { max_iterations, sub_algorithm, .. } = options;
+    let mut start = StartingPair { a, b, velocities, target, slack: zero, axis, max_iterations, sub_algorithm };
     // Where only deeper motions count, what is known of the start is looked for below.
     if let Outcome::Hit(Impact { time, normal: None, .. }) = answer.outcome
         && time == zero
         && options.start_in_contact == StartInContact::Report
         && let Some(rare) = options.rare.0
     {
-        (rare.touch)(&start, &mut answer, options);
+        (rare.touch)(&start, &mut answer);
     }
     if options.start_in_contact == StartInContact::IfDeeper {
         let [core_a, core_b] = cores;
@@ -302,7 +314,7 @@ fn answer<V: Vector>(
         let units = |number: f64| V::Scalar::EPSILON * Scalar::from_f64(number);
         let stated = (core_a.error + core_b.error) * Scalar::from_f64(NEAR_OF_STATED);
         start.slack = sizes * units(NEAR) + far * units(NEAR_OF_FAR) + stated;
-        only_if_deeper(&mut answer, &start, motion, options);
+        only_if_deeper(&mut answer, &start, options);
     }
     answer.status = answer.status.of(&answer.outcome, answer.is_certain());
     answer
@@ -360,28 +372,23 @@ fn hit_on_the_way<V: Vector>(
 /// more than a slack may be in contact.
 #[cold]
 #[inline(never)]
-fn only_if_deeper<V: Vector>(
-    answer: &mut LinearCast<V>,
-    start: &StartingPair<'_, V>,
-    motion: Motion<V>,
-    options: &LinearCastOptions<V>,
-) {
-    let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+fn only_if_deeper<V: Vector>(answer: &mut LinearCast<V>, start: &StartingPair<'_, V>, options: &LinearCastOptions<V>) {
+    let (zero, infinity, [velocity_a, velocity_b]) = (V::Scalar::ZERO, V::Scalar::infinity(), start.velocities);
     let may_begin_in_contact = match answer.outcome {
         Outcome::Hit(Impact { normal: Some(n), time, .. }) => {
-            let closing = n.dot(motion.velocity_b - motion.velocity_a);
+            let closing = n.dot(velocity_b - velocity_a);
             // NaN is looked at.
             !(closing * time > start.slack)
         }
         Outcome::Hit(_) => true,
-        Outcome::Undecided => answer.lower * (motion.velocity_b - motion.velocity_a).norm() <= start.slack,
+        Outcome::Undecided => answer.lower * (velocity_b - velocity_a).norm() <= start.slack,
         Outcome::Miss(_) => false,
     };
     if !may_begin_in_contact {
         return;
     }
     // Without a look at the start nothing is known.
-    match options.rare.0.and_then(|rare| (rare.of_motion)(start, answer, motion, options)) {
+    match options.rare.0.and_then(|rare| (rare.of_motion)(start, &mut answer.iterations)) {
         Some(Later::Apart) => {}
         Some(Later::Never(axis)) => {
             (answer.outcome, answer.status) = (Outcome::Miss(Miss { axis }), Status::Converged);
@@ -404,24 +411,4 @@ fn only_if_deeper<V: Vector>(
             (answer.outcome, answer.lower, answer.upper) = (Outcome::Undecided, zero, infinity);
         }
     }
-}
-
-/// Two shapes at the start of a cast. They are behind pointers, so that rare queries are compiled once.
-pub(crate) struct StartingPair<'s, V: Vector> {
-    pub(crate) a: Shape<'s, V>,
-    pub(crate) b: Shape<'s, V>,
-    /// How far apart they count as touching.
-    pub(crate) target: V::Scalar,
-    /// How much less, or more, may be rounding.
-    pub(crate) slack: V::Scalar,
-}
-
-/// What is proved of shapes that may be in contact at the start.
-pub(crate) enum Later<V: Vector> {
-    /// They are apart there.
-    Apart,
-    /// They get deeper, from the start on, or if they are apart by the slack, from `upper` on at the latest.
-    Deeper { upper: V::Scalar, point: V, normal: V },
-    /// They never get deeper, but leave, or slide, along this direction from `b` to `a`.
-    Never(V),
 }

@@ -85,7 +85,8 @@ compiled_once! {
         observer: &mut Observer<'_, V>,
     ) -> SignedDistance<V> {
         let axis = options.axis.map(|axis| if is_swapped { -axis } else { axis });
-        let wanted = Wanted::new(OfOverlap::Depth, SignedDistanceOptions { axis, ..options }, Some(&RareInDistances::TABLE));
+        let options = SignedDistanceOptions { axis, ..options };
+        let wanted = Wanted::new(OfOverlap::Depth, options, Some(&RareInDistances::TABLE));
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, true>(&mut cores, &wanted, observer));
         let mut answer = found.signed_distance(&cores, &wanted);

@@ -1,47 +1,64 @@
 //! Shapes that move straight and may be in contact at the start: how they touch there, and whether they get deeper.
 //!
-//! A [`linear_cast`](crate::linear_cast()) asks only if its own bounds leave the start open. The signed distance of the
-//! shapes answers, at the start and at places along the motion.
+//! A [`linear_cast`](crate::linear_cast()) asks only where it finds a hit at its start, or may not count one there. The
+//! signed distance of the shapes answers, at the start and at places along the motion.
 
 use convex_support::numerics::bound::{raised, roundings};
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Hint, Posed, Scalar, Vector, compiled_table};
+use convex_support::{Hint, Posed, Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::cast::RareInRayCasts;
 use crate::distance::distance_of_any;
-use crate::linear_cast::{Later, StartingPair};
-use crate::options::{MayBeLean, Rare};
-use crate::shape::WithoutLines;
+use crate::options::MayBeLean as _;
+use crate::shape::{Shape, WithoutLines};
 use crate::signed_distance::signed_distance_of_any;
 use crate::{
-    DistanceOptions, HalfSpace, Impact, LinearCast, LinearCastOptions, Motion, Outcome, RayCastOptions, SignedDistance,
-    SignedDistanceOptions, Status,
+    Cast, DistanceOptions, HalfSpace, Impact, Outcome, RayCastOptions, SignedDistance, SignedDistanceOptions, Status,
+    SubAlgorithm,
 };
 
 /// The number of places along a motion that are looked at, at most.
 const LOOKS: usize = 24;
 
 /// What a lean linear cast leaves out: what a ray cast does, and the measurements of shapes in contact at the start.
-#[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct RareInLinearCasts<V: Vector> {
     pub(crate) in_ray_casts: &'static RareInRayCasts<V>,
-    pub(crate) touch: fn(&StartingPair<'_, V>, &mut LinearCast<V>, &LinearCastOptions<V>),
-    pub(crate) of_motion:
-        fn(&StartingPair<'_, V>, &mut LinearCast<V>, Motion<V>, &LinearCastOptions<V>) -> Option<Later<V>>,
+    pub(crate) touch: fn(&StartingPair<'_, V>, &mut Cast<Impact<V>, V>),
+    pub(crate) of_motion: fn(&StartingPair<'_, V>, &mut usize) -> Option<Later<V>>,
 }
 
-impl<V: Vector> MayBeLean for LinearCastOptions<V> {
-    type Table = RareInLinearCasts<V>;
-    const TABLE: Self::Table = RareInLinearCasts {
+impl<V: Vector> RareInLinearCasts<V> {
+    pub(crate) const TABLE: Self = Self {
         in_ray_casts: &RayCastOptions::TABLE,
-        touch: |start, answer, options| start.touch(answer, options),
-        of_motion: |start, answer, motion, options| start.of_motion(answer, motion, options),
+        touch: |start, answer| start.touch(answer),
+        of_motion: |start, iterations| start.of_motion(iterations),
     };
+}
 
-    fn rare() -> Rare<Self> {
-        Rare(Some(compiled_table!(RareInLinearCasts<V> of LinearCastOptions)))
-    }
+/// Two shapes at the start of a cast. They are behind pointers, so that rare queries are compiled once.
+pub(crate) struct StartingPair<'s, V: Vector> {
+    pub(crate) a: Shape<'s, V>,
+    pub(crate) b: Shape<'s, V>,
+    pub(crate) velocities: [V; 2],
+    /// How far apart they count as touching.
+    pub(crate) target: V::Scalar,
+    /// How much less, or more, may be rounding.
+    pub(crate) slack: V::Scalar,
+    /// A first guess of the direction from `b` to `a`.
+    pub(crate) axis: Option<V>,
+    pub(crate) max_iterations: usize,
+    pub(crate) sub_algorithm: SubAlgorithm,
+}
+
+/// What is proved of shapes that may be in contact at the start.
+pub(crate) enum Later<V: Vector> {
+    /// They are apart there.
+    Apart,
+    /// They get deeper, from the start on, or if they are apart by the slack, from `upper` on at the latest.
+    Deeper { upper: V::Scalar, point: V, normal: V },
+    /// They never get deeper, but leave, or slide, along this direction from `b` to `a`.
+    Never(V),
 }
 
 impl<V: Vector> StartingPair<'_, V> {
@@ -49,14 +66,14 @@ impl<V: Vector> StartingPair<'_, V> {
     /// finds is behind the start or, if they slide, ahead of it.
     #[cold]
     #[inline(never)]
-    fn touch(&self, answer: &mut LinearCast<V>, options: &LinearCastOptions<V>) {
+    fn touch(&self, answer: &mut Cast<Impact<V>, V>) {
         let zero = V::Scalar::ZERO;
-        let left = |taken: usize| options.max_iterations.saturating_sub(taken);
+        let left = |taken: usize| self.max_iterations.saturating_sub(taken);
         let wanted = DistanceOptions::new().with_max_iterations(left(answer.iterations));
-        let at_start = distance_of_any(self.a, self.b, wanted.with_sub_algorithm(options.sub_algorithm));
+        let at_start = distance_of_any(self.a, self.b, wanted.with_sub_algorithm(self.sub_algorithm));
         answer.iterations += at_start.iterations;
         let max_iterations = left(answer.iterations);
-        let start = self.signed_distance(&LinearCastOptions { max_iterations, ..*options }, zero);
+        let start = StartingPair { max_iterations, ..*self }.signed_distance(zero);
         answer.iterations += start.iterations;
         let only_touches = start.upper >= self.target;
         if !only_touches {
@@ -68,10 +85,10 @@ impl<V: Vector> StartingPair<'_, V> {
     }
 
     /// The signed distance at the start; the search stops as soon as the depth is certain to exceed a limit.
-    fn signed_distance(&self, options: &LinearCastOptions<V>, depth_limit: V::Scalar) -> SignedDistance<V> {
+    fn signed_distance(&self, depth_limit: V::Scalar) -> SignedDistance<V> {
         let mut wanted = SignedDistanceOptions::new().with_depth_limit(depth_limit);
-        wanted.max_iterations = wanted.max_iterations.min(options.max_iterations);
-        wanted.axis = options.warm_start.map(|warm| warm.axis);
+        wanted.max_iterations = wanted.max_iterations.min(self.max_iterations);
+        wanted.axis = self.axis;
         signed_distance_of_any(self.a, self.b, wanted)
     }
 
@@ -83,20 +100,14 @@ impl<V: Vector> StartingPair<'_, V> {
     /// a speed `c`. So shapes get deeper at once or never, and never do if they were deeper before the start.
     #[cold]
     #[inline(never)]
-    fn of_motion(
-        &self,
-        answer: &mut LinearCast<V>,
-        motion: Motion<V>,
-        options: &LinearCastOptions<V>,
-    ) -> Option<Later<V>> {
-        let start = self.signed_distance(options, V::Scalar::infinity());
-        answer.iterations += start.iterations;
+    fn of_motion(&self, iterations: &mut usize) -> Option<Later<V>> {
+        let start = self.signed_distance(V::Scalar::infinity());
+        *iterations += start.iterations;
         if !(start.lower <= self.target + self.slack) {
             return Some(Later::Apart);
         }
-        let mut later = |motion| self.later(motion, options, &start, &mut answer.iterations);
-        let backwards = Motion { velocity_a: -motion.velocity_a, velocity_b: -motion.velocity_b };
-        later(motion).or_else(|| match later(backwards) {
+        let mut later = |velocities| StartingPair { velocities, ..*self }.later(&start, iterations);
+        later(self.velocities).or_else(|| match later(self.velocities.map(|velocity| -velocity)) {
             Some(Later::Deeper { .. }) => Some(Later::Never(start.normal)),
             _ => None,
         })
@@ -107,22 +118,16 @@ impl<V: Vector> StartingPair<'_, V> {
     /// Otherwise they are looked at when the lines cross: either they are deeper then, or the line of the nearest plane
     /// there takes the place of one of both. This ends soon if `s` has kinks. If it is smooth, each second look is
     /// where its slope is zero if that changes evenly.
-    fn later(
-        &self,
-        motion: Motion<V>,
-        options: &LinearCastOptions<V>,
-        start: &SignedDistance<V>,
-        iterations: &mut usize,
-    ) -> Option<Later<V>> {
-        let zero = V::Scalar::ZERO;
-        let velocity = motion.velocity_a - motion.velocity_b;
+    fn later(&self, start: &SignedDistance<V>, iterations: &mut usize) -> Option<Later<V>> {
+        let (zero, [velocity_a, velocity_b]) = (V::Scalar::ZERO, self.velocities);
+        let velocity = velocity_a - velocity_b;
         let Some(along) = velocity.unit() else { return (velocity == V::ZERO).then_some(Later::Never(start.normal)) };
-        let lost = lost_in_sum(motion.velocity_a, -motion.velocity_b).norm();
+        let lost = lost_in_sum(velocity_a, -velocity_b).norm();
         // Of numbers out of range nothing is known.
         let slack = Some(self.slack).filter(|slack| slack.is_finite())?;
         let [never, deeper] = [start.upper, start.lower].map(|s| s.min(self.target) - slack);
-        let mut before = self.line(start.normal, motion, zero)?;
-        let mut after = if before.closing > zero { self.line(along, motion, V::Scalar::infinity())? } else { before };
+        let mut before = self.line(start.normal, zero)?;
+        let mut after = if before.closing > zero { self.line(along, V::Scalar::infinity())? } else { before };
         for look in 0..LOOKS {
             let closing = before.closing - after.closing;
             // It is zero if the quotient is NaN, since there is only one line.
@@ -144,7 +149,7 @@ impl<V: Vector> StartingPair<'_, V> {
             let moved = StartingPair { a: &WithoutLines(&moved), b: self.b, ..*self };
             // The place is rounded, and so is the velocity.
             let off = roundings(2.0, step.norm()) + raised(lost * time);
-            let there = moved.signed_distance(options, (off - deeper).max(zero));
+            let there = moved.signed_distance((off - deeper).max(zero));
             *iterations += there.iterations + 1;
             let upper = there.upper + off;
             if upper < deeper {
@@ -158,7 +163,7 @@ impl<V: Vector> StartingPair<'_, V> {
             if least >= deeper && upper < never {
                 return None;
             }
-            let line = self.line(there.normal, motion, time)?;
+            let line = self.line(there.normal, time)?;
             *(if line.closing > zero { &mut before } else { &mut after }) = line;
         }
         None
@@ -166,7 +171,7 @@ impl<V: Vector> StartingPair<'_, V> {
 
     /// The line of the plane across a direction that keeps the shapes farthest apart, found when they have moved for
     /// some time.
-    fn line(&self, direction: V, motion: Motion<V>, time: V::Scalar) -> Option<Line<V>> {
+    fn line(&self, direction: V, time: V::Scalar) -> Option<Line<V>> {
         let plane = HalfSpace::new(direction, V::Scalar::ZERO).ok()?.plane();
         let [core_a, core_b] = [self.a.core(), self.b.core()];
         let point_a = self.a.core_support(-direction, &mut Hint::new());
@@ -174,7 +179,8 @@ impl<V: Vector> StartingPair<'_, V> {
         let error = plane.error_along(&self.a.rounding()) + plane.error_along(&self.b.rounding());
         let terms = [core_a.origin, point_a, -core_b.origin, -point_b];
         let gap = plane.height(terms, error, core_a.radius + core_b.radius).least();
-        let closing = plane.sinking([motion.velocity_a, -motion.velocity_b]).most();
+        let [velocity_a, velocity_b] = self.velocities;
+        let closing = plane.sinking([velocity_a, -velocity_b]).most();
         Some(Line { gap, closing, normal: direction, time })
     }
 }
