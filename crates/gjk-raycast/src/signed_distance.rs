@@ -5,7 +5,7 @@ use convex_support::{Core, SupportMap, Vector, compiled_once};
 use crate::body::{Both, Shapes};
 use crate::extra::Extra;
 use crate::observer::Observer;
-use crate::separation::{Closer, Cores, OfOverlap, Wanted, direct, separation};
+use crate::separation::{Closer, Cores, Deeper, OfOverlap, Wanted, direct, separation};
 use crate::shape::Shape;
 use crate::{Iterate, SignedDistance, SignedDistanceOptions};
 
@@ -86,7 +86,7 @@ compiled_once! {
         observer: &mut Observer<'_, V>,
     ) -> SignedDistance<V> {
         let axis = options.axis.map(|axis| if is_swapped { -axis } else { axis });
-        let wanted = Wanted::new(OfOverlap::Depth, SignedDistanceOptions { axis, ..options }, Closer::named());
+        let wanted = Wanted::new(OfOverlap::Depth, SignedDistanceOptions { axis, ..options }, Deeper::named().part(|deeper| &deeper.0));
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, true>(&mut cores, &wanted, observer));
         let mut answer = found.signed_distance(&cores, &wanted);

@@ -18,7 +18,7 @@ use crate::extra::{Extra, in_static};
 use crate::gjk::rounding;
 use crate::linear_cast::{AtStart, by_search};
 use crate::observer::Observer;
-use crate::separation::Closer;
+use crate::separation::{Closer, Deeper};
 use crate::shape::Shape;
 use crate::signed_distance::rough_signed_distance;
 use crate::unit::{is_moderate, length_bound, lost_to_underflow};
@@ -64,7 +64,7 @@ pub(crate) struct FullMotion<V: Vector> {
 
 impl<V: Vector> FullMotion<V> {
     const TABLE: Self = Self {
-        closer: &Closer::TABLE,
+        closer: &Deeper::<V>::TABLE.0,
         straight: |body, shapes, cores, motion, options| {
             let options = LinearCastOptions { extra: AtStart::named(), ..*options };
             by_search(body, shapes, cores, motion, &options, &mut Observer::none())

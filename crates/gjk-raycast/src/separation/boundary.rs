@@ -11,7 +11,7 @@ use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::cores::Vertex;
-use super::faces::turned_right;
+use super::near::faces::turned_right;
 use crate::double::{LEAST, Vec3, cross, dot};
 use crate::simplex::{MAX_POINTS, nearest_face};
 

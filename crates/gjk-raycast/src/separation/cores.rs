@@ -4,8 +4,8 @@ use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::near_contact::{NEAR, NearContact, is_near_contact, near_contact};
-use super::uncertainty::{Uncertainty, error_of_points};
+use super::near::uncertainty::{Uncertainty, error_of_points};
+use super::near::{NEAR, NearContact, is_near_contact, near_contact};
 use super::zonotope::{Zonotope, parallelotope};
 use super::{OfOverlap, Wanted};
 use crate::body::{AnyPair, Pair, PointPair, Shapes, TracedSupport as _};
@@ -176,11 +176,12 @@ impl<'a, V: Vector> Cores<'a, V> {
         let frame = Frame { radius: self.pair.radius() * self.frame.per_unit, ..self.frame };
         let size = self.size * self.frame.scale;
         let peeled = core::mem::take(&mut self.pair.peeled);
-        self.near = near_contact(&mut self.pair, &frame, size, begun, left);
+        self.near = near_contact(&mut self.pair, &frame, size, begun, left, true);
         self.pair.peeled = peeled;
         let Some(near) = &self.near else { return false };
         self.iterations += near.iterations.saturating_sub(before);
-        if wanted.is_depth() { near.is_closed() } else { near.is_settled() }
+        // No depth is asked of a distance, which ends here.
+        !wanted.is_depth() || near.is_closed()
     }
 
     /// Whether the present error suffices for cores at this distance: it is small beside the distance, and beside the

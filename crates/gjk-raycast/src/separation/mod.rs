@@ -7,11 +7,8 @@
 mod boundary;
 mod cores;
 mod expansion;
-mod faces;
-mod near_contact;
+mod near;
 mod newton;
-mod room;
-mod uncertainty;
 mod witness;
 mod zonotope;
 
@@ -27,12 +24,10 @@ use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, Status, Su
 pub(crate) use cores::Cores;
 use cores::{ClosedForm, WayOut};
 use expansion::{Expanded, expand};
-pub(crate) use faces::{ProjectedFace, is_around_zero};
-use near_contact::NEAR;
-pub(crate) use near_contact::{NearContact, is_near_contact, near_contact_of};
-pub(crate) use room::{FromContact, across_corners, look_after, room_within};
-use uncertainty::error_of_points;
-pub(crate) use uncertainty::{Uncertainty, slack};
+use near::NEAR;
+use near::uncertainty::error_of_points;
+pub(crate) use near::{FromContact, NearContact, ProjectedFace, Uncertainty, across_corners, is_around_zero};
+pub(crate) use near::{is_near_contact, look_after, near_contact_of, room_within, slack};
 use witness::{Ends, MetPoint};
 
 /// The question about two bodies, and when the search may stop.
@@ -51,20 +46,30 @@ pub(crate) struct Wanted<V: Vector> {
 #[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct Closer<V: Vector> {
     look_near: fn(&mut Cores<'_, V>, &Wanted<V>, Option<&Gjk<V>>) -> bool,
-    reach: fn(&mut Cores<'_, V>, &Wanted<V>, &mut Gjk<V>, End, &mut Observer<'_, V>) -> Separation<V>,
+    /// The depth, where it is asked for.
+    reach: Option<fn(&mut Cores<'_, V>, &Wanted<V>, &mut Gjk<V>, End, &mut Observer<'_, V>) -> Separation<V>>,
 }
 
 impl<V: Vector> Closer<V> {
     pub(crate) const TABLE: Self =
-        Self { look_near: |cores, wanted, state| cores.look_near(wanted, state), reach: reach_closely };
+        Self { look_near: |cores, wanted, state| cores.look_near(wanted, state), reach: None };
 }
 
 in_static!(Closer);
 
+/// The same with the depth.
+pub(crate) struct Deeper<V: Vector>(pub(crate) Closer<V>);
+
+impl<V: Vector> Deeper<V> {
+    pub(crate) const TABLE: Self = Self(Closer { reach: Some(reach_closely), ..Closer::TABLE });
+}
+
+in_static!(Deeper);
+
 /// The question about bodies that overlap.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum OfOverlap {
-    /// Only whether they do. The depth is computed if nothing else decides it.
+    /// Only whether they do.
     Known,
     Depth,
     /// The depth, and near contact only as exactly as the search itself gives it.
@@ -155,12 +160,15 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     let mut state = cores.first_state(options.axis);
     let end = cores.approach(wanted, &mut state, closest, observer);
     is_near |= closest.is_none() && cores.are_near(&mut state);
+    // Where support points alone made no progress, a distance is measured again, however far apart the bodies are.
+    let is_stalled = !IS_DEPTH && end == End::Stalled && state.length.is_finite();
+    is_near |= is_stalled;
     if is_near && !IS_DEPTH && extra.is_some() && !wanted.is_plain() {
         // Where rounding decides, it has to decide alike wherever a query begins.
         return separation::<V, IS_DEPTH>(cores, &wanted.plain(), observer);
     }
     if is_near
-        && closest.is_none()
+        && (closest.is_none() || is_stalled)
         && tells_all(cores, Some(&state))
         && let Some(near) = &cores.near
     {
@@ -169,10 +177,10 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     let is_known = if IS_DEPTH {
         end == End::Separated && cores.is_well_apart(state.length)
     } else {
-        end != End::Stalled && !(is_near && (extra.is_none() || cores.near.is_some()))
+        end != End::Stalled && !(is_near && extra.is_none())
     };
-    if !is_known && let Some(extra) = extra {
-        return (extra.reach)(cores, wanted, &mut state, end, observer);
+    if !is_known && let Some(reach) = extra.and_then(|extra| extra.reach) {
+        return reach(cores, wanted, &mut state, end, observer);
     }
     let mut known = Separation::of_gjk(cores, &mut state, end);
     let is_full = end == End::Overlap && state.simplex.points().len() > V::DIM;
@@ -233,7 +241,9 @@ fn reach_closely<V: Vector>(
                 let near = cores.near.as_ref().filter(|near| is_apart && near.gap.is_finite());
                 let is_narrower =
                     |by_look: &Separation<V>| !(by_gjk.outer - by_gjk.inner <= by_look.outer - by_look.inner);
-                near.map(|near| Separation::of_near_contact(cores, near)).filter(is_narrower).unwrap_or(by_gjk)
+                // However the search ended, the width tells what the look was worth.
+                let by_look = near.map(|near| Separation::of_near_contact(cores, near)).filter(is_narrower);
+                by_look.map_or(by_gjk, |by_look| Separation { status: end.status(), ..by_look })
             }
         };
         match expanded {
@@ -242,8 +252,7 @@ fn reach_closely<V: Vector>(
             None => Separation { status: Status::Stalled, ..known },
         }
     };
-    let known = known.with_best_plane(cores, state);
-    if wanted.is_depth() { known } else { known.with_common_points(cores, state) }
+    known.with_best_plane(cores, state)
 }
 
 impl<V: Vector> Separation<V> {
@@ -337,12 +346,6 @@ impl<V: Vector> Separation<V> {
             }
         }
         self
-    }
-
-    /// The same with GJK's points, if cores overlap and those are nearer to one another than the ends of the way out.
-    fn with_common_points(self, cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
-        let MetPoint { point, points, .. } = MetPoint::new(cores, state);
-        if point.norm() < self.depth { Self { points, ..self } } else { self }
     }
 
     /// The signed distance of the bodies along the normal, in the world's unit, as it is measured.

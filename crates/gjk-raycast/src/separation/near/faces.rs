@@ -148,7 +148,7 @@ pub(super) fn about_edge<V: Vector>(edge: V, n: V) -> impl Iterator<Item = V> {
 }
 
 /// A vector of the plane turned by a right angle.
-pub(super) fn turned_right<V: Vector>(v: V) -> V {
+pub(crate) fn turned_right<V: Vector>(v: V) -> V {
     V::from_fn(|i| if i == 0 { v.get(1) } else { -v.get(0) })
 }
 
