@@ -7,7 +7,6 @@ use crate::body::{Both, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::distance::distance;
 use crate::gjk::{BoxesMeet, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, rounding};
 use crate::observer::Observer;
-use crate::separation::is_near_contact;
 use crate::shape::Shape;
 use crate::unit::is_moderate;
 use crate::{DistanceOptions, IntersectOptions, Intersection, Iterate, Status};
@@ -142,7 +141,7 @@ compiled_once! {
             ..GjkOptions::new(state.normal, max_iterations)
         };
         let end = if meet == Some(true) { End::Overlap } else { gjk(&mut state, pair, frame, options, known, observer) };
-        let (apart, near) = (state.lower > frame.radius + frame.error, is_near_contact(&mut state, &frame));
+        let (apart, near) = (state.lower > frame.radius + frame.error, state.is_near_contact(&frame));
         let (overlap, axis) = match end {
             End::Separated if apart => (false, state.axis.unit()),
             End::Overlap if !near => (true, None),

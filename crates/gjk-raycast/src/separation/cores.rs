@@ -4,12 +4,11 @@ use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::near::uncertainty::{Uncertainty, error_of_points};
-use super::near::{NEAR, NearContact, is_near_contact, near_contact};
+use super::near::{NearContact, SUM, Uncertainty, near_contact};
 use super::zonotope::{Zonotope, parallelotope};
 use super::{OfOverlap, Wanted};
 use crate::body::{AnyPair, Pair, PointPair, Shapes, TracedSupport as _};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, first_direction, gjk};
 use crate::observer::Observer;
 use crate::symmetric::Symmetric;
 use crate::unit::lost_to_underflow;
@@ -159,7 +158,7 @@ impl<'a, V: Vector> Cores<'a, V> {
         // Rounded bodies whose cores overlap are in deep overlap.
         let is_full = state.simplex.points().len() > V::DIM;
         let are_deep = is_full && self.frame.radius > self.frame.error * Scalar::from_f64(NEAR);
-        !are_deep && is_near_contact(state, &self.frame)
+        !are_deep && state.is_near_contact(&self.frame)
     }
 
     /// Measures bodies near contact once more, perhaps after a search. Whether this is final.
@@ -422,4 +421,15 @@ impl<'a, V: Vector> Cores<'a, V> {
         }
         state
     }
+}
+
+/// A bound on the error of points of the difference of two cores of the given size, as a length, in the world's unit:
+/// no less than any [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths,
+/// and the offset of the origins loses half an ε of its own.
+#[inline(always)]
+pub(crate) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
+    pair: &Pair<'_, T>,
+    size: V::Scalar,
+) -> V::Scalar {
+    pair.error() + (size - pair.radius()) * (V::Scalar::EPSILON * Scalar::from_f64(SUM))
 }

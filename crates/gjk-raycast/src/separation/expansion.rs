@@ -3,10 +3,11 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::MetPoint;
 use super::boundary::Boundary;
 use super::cores::{Cores, Vertex, WayOut};
 use super::newton;
-use super::witness::{self, Ends, MetPoint};
+use super::witness::{self, Ends};
 use crate::SignedDistanceOptions;
 use crate::gjk::Gjk;
 use crate::observer::Observer;

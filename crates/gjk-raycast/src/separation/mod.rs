@@ -18,17 +18,16 @@ use num_traits::Float as _;
 
 use crate::body::{Pair, PointPair, Shapes, TracedSupport as _};
 use crate::extra::{Extra, in_static};
-use crate::gjk::{End, Gjk, rounding};
+use crate::gjk::{End, Gjk, NEAR, rounding};
 use crate::observer::Observer;
 use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, Status, SubAlgorithm};
 pub(crate) use cores::Cores;
+use cores::error_of_points;
 use cores::{ClosedForm, WayOut};
 use expansion::{Expanded, expand};
-use near::NEAR;
-use near::uncertainty::error_of_points;
-pub(crate) use near::{FromContact, NearContact, ProjectedFace, Uncertainty, across_corners, is_around_zero};
-pub(crate) use near::{is_near_contact, look_after, near_contact_of, room_within, slack};
-use witness::{Ends, MetPoint};
+pub(crate) use near::{FromContact, NearContact, ProjectedFace, Uncertainty, across_corners};
+pub(crate) use near::{look_after, near_contact_of, room_within};
+use witness::Ends;
 
 /// The question about two bodies, and when the search may stop.
 pub(crate) struct Wanted<V: Vector> {
@@ -470,6 +469,35 @@ impl<V: Vector> Separation<V> {
         let share = |of: V::Scalar| v * (of / radius).min(Scalar::ONE);
         [a - share(cores.radii[0]), b + share(cores.radii[1])]
     }
+}
+
+/// The point of the difference next to zero of those that GJK knows. Where cores are well in one another nothing asks
+/// for it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MetPoint<V: Vector> {
+    pub(super) point: V,
+    /// The points of both cores that it is made of.
+    pub(super) points: PointPair<V>,
+    /// Zero is certain to be no farther from the difference than this.
+    pub(super) reached: V::Scalar,
+}
+
+impl<V: Vector> MetPoint<V> {
+    #[inline(never)]
+    pub(super) fn new(cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
+        state.ensure_measured();
+        let (points, sum) = (state.simplex.weighted_witness(), state.simplex.weight());
+        let point = state.simplex.weighted_point() / sum;
+        let is_known = state.length.is_finite() && sum > V::Scalar::ZERO;
+        Self { point, points, reached: if is_known { cores.greatest_length(point) } else { V::Scalar::infinity() } }
+    }
+}
+
+/// The rounding of a signed distance in the world's unit: unit vectors are so to 2ε, and the sum of the radii and the
+/// two sums that the radii and the length go into round to half of that.
+#[inline(always)]
+pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
+    S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
 }
 
 /// The signed distance of shapes whose cores are apart by more than a few errors, and whose closest points are known

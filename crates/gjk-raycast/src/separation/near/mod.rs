@@ -21,24 +21,11 @@ use crate::body::{AnyPair, Both, CastBody as _, Pair, PointPair, TracedSupport a
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
 use crate::shape::Shape;
-pub(crate) use faces::{ProjectedFace, is_around_zero};
+use crate::simplex::is_around_zero;
+pub(crate) use faces::ProjectedFace;
 use faces::{about_edge, across_faces};
 pub(crate) use room::{FromContact, across_corners, look_after, room_within};
-pub(crate) use uncertainty::{Uncertainty, slack};
-
-/// How many errors of distance or depth still count as near contact.
-pub(crate) const NEAR: f64 = 16.0;
-
-/// Whether bodies may be nearer to contact than a few errors, after a search.
-#[inline(always)]
-pub(crate) fn is_near_contact<V: Vector>(state: &mut Gjk<V>, frame: &Frame<V>) -> bool {
-    if state.simplex.points().len() > V::DIM {
-        // A simplex of full dimension has zero inside, perhaps by rounding.
-        return !is_around_zero(state.simplex.points(), frame.error * V::Scalar::from_f64(2.0));
-    }
-    state.ensure_measured();
-    (state.length - frame.radius).abs() < frame.error * V::Scalar::from_f64(NEAR)
-}
+pub(crate) use uncertainty::{SUM, Uncertainty};
 
 /// The result about bodies near contact; lengths in units of the frame, from body to body.
 #[derive(Clone, Copy)]

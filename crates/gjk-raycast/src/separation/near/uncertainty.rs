@@ -8,14 +8,14 @@
 use convex_support::{Rounding, Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{AnyPair, Pair, Shapes};
+use crate::body::AnyPair;
 
 /// The rounding of a point of the difference, in units of ε times the coordinates of the cores and of the offset of
 /// their origins.
 ///
 /// A dot product with a unit vector counts in: its three products and two sums lose 1.5 of their magnitudes. The sums
 /// `a − b` and `a − b + o` lose 0.5 each.
-const SUM: f64 = 2.6;
+pub(crate) const SUM: f64 = 2.6;
 const OFFSET: f64 = 2.1;
 
 /// A bound on the error of points of the difference of two cores, coordinate by coordinate.
@@ -103,30 +103,12 @@ impl<V: Vector> Uncertainty<V> {
     }
 }
 
-/// A bound on the error of points of the difference of two cores of the given size, as a length, in the world's unit:
-/// no less than any [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths,
-/// and the offset of the origins loses half an ε of its own.
-#[inline(always)]
-pub(crate) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
-    pair: &Pair<'_, T>,
-    size: V::Scalar,
-) -> V::Scalar {
-    pair.error() + (size - pair.radius()) * (V::Scalar::EPSILON * Scalar::from_f64(SUM))
-}
-
 /// By how much an error `e` across a direction adds to the length `l` along it, at most: `√(l² + e²) − l` is
 /// `e²/(l + √(l² + e²))`, where the root is no less than either.
 #[inline(always)]
 fn added_across<S: Scalar>(length: S, error: S) -> S {
     // Its own rounding. If both are zero, the quotient is no number, and the error the minimum.
     (error * (error / (length + length.max(error))) * (S::ONE + S::EPSILON * S::from_f64(4.0))).min(error)
-}
-
-/// The rounding of a signed distance in the world's unit: unit vectors are so to 2ε, and the sum of the radii and the
-/// two sums that the radii and the length go into round to half of that.
-#[inline(always)]
-pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
-    S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
 }
 
 #[cfg(test)]
