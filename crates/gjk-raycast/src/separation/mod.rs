@@ -4,12 +4,9 @@
 //! search has three means, in this order, and ends at the first that answers the question: GJK on the cores, a second
 //! measurement near contact, and an expanding polytope. For a depth, the closed form for two boxes comes before them.
 
-mod boundary;
 mod cores;
-mod expansion;
+mod depth;
 mod near;
-mod newton;
-mod witness;
 mod zonotope;
 
 use convex_support::numerics::bound::least;
@@ -23,11 +20,9 @@ use crate::observer::Observer;
 use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, Status, SubAlgorithm};
 pub(crate) use cores::Cores;
 use cores::error_of_points;
-use cores::{ClosedForm, WayOut};
-use expansion::{Expanded, expand};
+pub(crate) use depth::Deeper;
 pub(crate) use near::{FromContact, NearContact, ProjectedFace, Uncertainty, across_corners};
 pub(crate) use near::{look_after, near_contact_of, room_within};
-use witness::Ends;
 
 /// The question about two bodies, and when the search may stop.
 pub(crate) struct Wanted<V: Vector> {
@@ -55,15 +50,6 @@ impl<V: Vector> Closer<V> {
 }
 
 in_static!(Closer);
-
-/// The same with the depth.
-pub(crate) struct Deeper<V: Vector>(pub(crate) Closer<V>);
-
-impl<V: Vector> Deeper<V> {
-    pub(crate) const TABLE: Self = Self(Closer { reach: Some(reach_closely), ..Closer::TABLE });
-}
-
-in_static!(Deeper);
 
 /// The question about bodies that overlap.
 #[derive(Clone, Copy, PartialEq)]
@@ -201,59 +187,6 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     known
 }
 
-/// The separation of cores that overlap or nearly touch, after a search for their closest points.
-#[inline(never)]
-fn reach_closely<V: Vector>(
-    cores: &mut Cores<'_, V>,
-    wanted: &Wanted<V>,
-    state: &mut Gjk<V>,
-    mut end: End,
-    observer: &mut Observer<'_, V>,
-) -> Separation<V> {
-    let options = &wanted.options;
-    let is_rounded = !cores.is_peeled() && cores.radius() > Scalar::ZERO;
-    let known = if is_rounded && end == End::Overlap { cores.closed_form(options.axis) } else { None };
-    let known = if let Some(known) = known {
-        Separation::of_closed_form(known)
-    } else {
-        // Half of the allowed support points is left for a second run.
-        let may_repeat =
-            end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
-        if may_repeat && !cores.is_peeled() && cores.peel() {
-            *state = cores.first_state(options.axis);
-            let wanted = Wanted::new(OfOverlap::Depth, *options, wanted.extra);
-            end = cores.approach(&wanted, state, None, observer);
-        }
-        if !cores.is_well_apart(state.length) {
-            cores.sharpen();
-        }
-        let is_apart = end == End::Separated || !state.length.is_finite();
-        let expanded = if is_apart { None } else { expand(cores, state, options, observer) };
-        // If the cores are apart after all, GJK's points are nearer than those of a facet.
-        let leads_out = |expanded: &&Expanded<V>| end == End::Overlap || !(expanded.way.h < Scalar::ZERO);
-        let known = match expanded.as_ref().filter(leads_out) {
-            Some(expanded) => Separation::of_expansion(expanded),
-            None => {
-                let by_gjk = Separation::of_gjk(cores, state, end);
-                // A look near contact that has left more than its errors between the bounds may still know the gap
-                // better. If bodies that overlap are apart without their rolling balls, it only knows that they meet.
-                let near = cores.near.as_ref().filter(|near| is_apart && near.gap.is_finite());
-                let is_narrower =
-                    |by_look: &Separation<V>| !(by_gjk.outer - by_gjk.inner <= by_look.outer - by_look.inner);
-                // However the search ended, the width tells what the look was worth.
-                let by_look = near.map(|near| Separation::of_near_contact(cores, near)).filter(is_narrower);
-                by_look.map_or(by_gjk, |by_look| Separation { status: end.status(), ..by_look })
-            }
-        };
-        match expanded {
-            Some(Expanded { way, .. }) => known.up_to(cores, state, way),
-            None if is_apart => known,
-            None => Separation { status: Status::Stalled, ..known },
-        }
-    };
-    known.with_best_plane(cores, state)
-}
-
 impl<V: Vector> Separation<V> {
     #[inline(always)]
     fn of_gjk(cores: &Cores<'_, V>, state: &mut Gjk<V>, end: End) -> Self {
@@ -275,76 +208,6 @@ impl<V: Vector> Separation<V> {
             status: end.status(),
             unexpanded: 0,
         }
-    }
-
-    /// By a measurement near contact. The points of the surfaces are between those of the cores, from which the plane
-    /// may lean by the root of the rounding.
-    #[cold]
-    fn of_near_contact(cores: &Cores<'_, V>, near: &NearContact<V>) -> Self {
-        let &NearContact { ref frame, points, normal, gap, lower, upper, .. } = near;
-        let between = (points.a - points.b + frame.offset).unit().unwrap_or(normal);
-        // Both cores may have lost their rolling balls, which are in their radii then.
-        let Pair { core_a, core_b, .. } = &cores.pair;
-        let aside = |whole: V::Scalar, part: V::Scalar| (normal * part - between * whole) * frame.per_unit;
-        let radius = cores.radius() * frame.per_unit;
-        Self {
-            u: -normal,
-            depth: -gap - radius,
-            inner: -upper - radius,
-            outer: -lower - radius,
-            axis: normal,
-            points: PointPair {
-                a: points.a + aside(core_a.radius, cores.radii[0]),
-                b: points.b - aside(core_b.radius, cores.radii[1]),
-            },
-            overlap: Some(near.overlap() == Some(true)),
-            status: Status::Converged,
-            unexpanded: 0,
-        }
-    }
-
-    fn of_closed_form(ClosedForm { u, depth, inner, outer, points }: ClosedForm<V>) -> Self {
-        Self { u, depth, inner, outer, axis: -u, points, overlap: None, status: Status::Converged, unexpanded: 0 }
-    }
-
-    /// By the ends of the way out that an expansion has found.
-    fn of_expansion(
-        &Expanded { way, ends: Ends { u, depth, points }, inner, status, unexpanded }: &Expanded<V>,
-    ) -> Self {
-        Self { u, depth, inner, outer: way.h, axis: -way.u(), points, overlap: None, status, unexpanded }
-    }
-
-    /// The same with the nearer one of the plane that ends a way out and the best one that GJK has come to.
-    fn up_to(self, cores: &Cores<'_, V>, state: &mut Gjk<V>, way: WayOut<V>) -> Self {
-        let by_way = way.h + cores.error_along(way.u());
-        // NaN is no bound.
-        let plane = cores.best_plane(state);
-        let plane = plane.filter(|&(outer, n)| outer <= by_way && self.lies_across(n, cores.gap(outer), cores));
-        let (outer, axis) = plane.unwrap_or((by_way, -way.u()));
-        Self { outer, axis, ..self }
-    }
-
-    /// Whether the points of the bodies are apart across a plane, by its axis into the difference and the lower bound
-    /// that it proves: if it keeps the bodies apart, or else to rounding. Of ways out that are equally short, another
-    /// plane may end another one.
-    fn lies_across(&self, axis: V, lower: V::Scalar, cores: &Cores<'_, V>) -> bool {
-        lower > Scalar::ZERO || (self.u + axis).norm() * self.value(cores).abs() <= cores.noise() * cores.scale()
-    }
-
-    /// The same with the plane of the measurement near contact, and then GJK's best one, if they prove more and have
-    /// the points across them.
-    #[cold]
-    fn with_best_plane(mut self, cores: &Cores<'_, V>, state: &Gjk<V>) -> Self {
-        let Some(near) = &cores.near else { return self };
-        let radius = cores.radius() * near.frame.per_unit;
-        let by_near = (-near.lower - radius, near.normal);
-        for (outer, axis) in [by_near].into_iter().chain(cores.best_plane(state)) {
-            // NaN is no bound.
-            if outer < self.outer && self.lies_across(axis, cores.gap(outer), cores) {
-                (self.outer, self.axis) = (outer, axis);
-            }
-        }
-        self
     }
 
     /// The signed distance of the bodies along the normal, in the world's unit, as it is measured.

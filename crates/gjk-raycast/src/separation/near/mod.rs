@@ -7,6 +7,7 @@
 //! The search begins at the offset of the origins, whatever axis the query began at, and the [larger body comes
 //! first](super::order). So all queries about one pair decide alike.
 
+mod answer;
 mod aside;
 pub(super) mod faces;
 mod room;

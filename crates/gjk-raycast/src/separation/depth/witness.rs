@@ -2,11 +2,12 @@
 
 use convex_support::{Scalar, Vector};
 
-use super::MetPoint;
+use super::WayOut;
 use super::boundary::Boundary;
-use super::cores::{Cores, WayOut};
 use crate::body::PointPair;
 use crate::gjk::Gjk;
+use crate::separation::MetPoint;
+use crate::separation::cores::Cores;
 use crate::simplex::project_rarely;
 
 /// The most facets of a walk.
