@@ -8,7 +8,6 @@ use crate::distance::distance;
 use crate::gjk::{BoxesMeet, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, rounding};
 use crate::observer::Observer;
 use crate::options::{MAX_ITERATIONS, options};
-use crate::separation::is_near_contact;
 use crate::shape::Shape;
 use crate::unit::is_moderate;
 use crate::{DistanceOptions, Iterate, Status, SubAlgorithm};
@@ -205,7 +204,7 @@ compiled_once! {
             ..GjkOptions::new(state.normal, max_iterations)
         };
         let end = if meet == Some(true) { End::Overlap } else { gjk(&mut state, pair, frame, options, known, observer) };
-        let (apart, near) = (state.lower > frame.radius + frame.error, is_near_contact(&mut state, &frame));
+        let (apart, near) = (state.lower > frame.radius + frame.error, state.is_near_contact(&frame));
         let (overlap, axis) = match end {
             End::Separated if apart => (false, state.axis.unit()),
             End::Overlap if !near => (true, None),

@@ -86,7 +86,7 @@ compiled_once! {
     ) -> SignedDistance<V> {
         let axis = options.axis.map(|axis| if is_swapped { -axis } else { axis });
         let options = SignedDistanceOptions { axis, ..options };
-        let wanted = Wanted::new(OfOverlap::Depth, options, Some(&RareInDistances::TABLE));
+        let wanted = Wanted::new(OfOverlap::Depth, options, Some(&RareInDistances::WITH_DEPTH));
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, true>(&mut cores, &wanted, observer));
         let mut answer = found.signed_distance(&cores, &wanted);

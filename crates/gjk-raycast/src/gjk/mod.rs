@@ -14,7 +14,7 @@ use crate::unit::{lost_to_underflow, moderate, power_of_two_near, reciprocal_of_
 use crate::{Status, SubAlgorithm};
 pub(crate) use boxes::{BoxesMeet, boxes};
 use next_direction::NextDirection;
-pub(crate) use state::Gjk;
+pub(crate) use state::{Gjk, NEAR};
 
 /// The position of the difference of two bodies, and the unit of length.
 #[derive(Clone, Copy, Debug)]

@@ -6,8 +6,11 @@ use num_traits::Float as _;
 
 use super::{Direction, Frame, Progress};
 use crate::body::{AnyPair, PointPair};
-use crate::simplex::{Closest, Face, MAX_POINTS, Simplex, nearest, nearest_face, project};
+use crate::simplex::{Closest, Face, MAX_POINTS, Simplex, is_around_zero, nearest, nearest_face, project};
 use crate::{Iterate, SubAlgorithm};
+
+/// How many errors of distance or depth still count as near contact.
+pub(crate) const NEAR: f64 = 16.0;
 
 /// The simplex, the bounds on the distance of the cores, and the plane that proves the lower one; lengths in units of
 /// the frame.
@@ -112,6 +115,17 @@ impl<V: Vector> Gjk<V> {
         let gap = self.length - self.lower;
         // By default there is no tolerance, and nothing to compute.
         gap <= frame.noise || tolerance > V::Scalar::ZERO && gap <= tolerance * (self.lower - frame.radius)
+    }
+
+    /// Whether bodies may be nearer to contact than a few errors, after a search.
+    #[inline(always)]
+    pub(crate) fn is_near_contact(&mut self, frame: &Frame<V>) -> bool {
+        if self.simplex.points().len() > V::DIM {
+            // A simplex of full dimension has zero inside, perhaps by rounding.
+            return !is_around_zero(self.simplex.points(), frame.error * V::Scalar::from_f64(2.0));
+        }
+        self.ensure_measured();
+        (self.length - frame.radius).abs() < frame.error * V::Scalar::from_f64(NEAR)
     }
 
     /// The iterate for an observer, after support point `w` was found.

@@ -64,7 +64,7 @@ pub(crate) struct RareInMotionCasts<V: Vector> {
 impl<V: Vector> MayBeLean for MotionCastOptions<V> {
     type Table = RareInMotionCasts<V>;
     const TABLE: Self::Table = RareInMotionCasts {
-        in_distances: &DistanceOptions::TABLE,
+        in_distances: &RareInDistances::WITH_DEPTH,
         straight: |body, shapes, cores, motion, options| {
             let options = LinearCastOptions { rare: LinearCastOptions::rare(), ..*options };
             by_search(body, shapes, cores, motion, &options, &mut Observer::none())

@@ -4,16 +4,10 @@
 //! search has three means, in this order, and ends at the first that answers the question: GJK on the cores, a second
 //! measurement near contact, and an expanding polytope. For a depth, the closed form for two boxes comes before them.
 
-mod boundary;
 mod cores;
+mod depth;
 mod distances;
-mod expansion;
-mod faces;
-mod near_contact;
-mod newton;
-mod room;
-mod uncertainty;
-mod witness;
+mod near;
 mod zonotope;
 
 use convex_support::numerics::bound::least;
@@ -21,20 +15,14 @@ use convex_support::{Core, Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Pair, PointPair, Shapes, TracedSupport as _};
-use crate::gjk::{End, Gjk, rounding};
+use crate::gjk::{End, Gjk, NEAR, rounding};
 use crate::observer::Observer;
 use crate::{Iterate, Status, SubAlgorithm};
 pub(crate) use cores::Cores;
-use cores::{ClosedForm, WayOut};
+use cores::error_of_points;
 pub use distances::{Distance, SignedDistance, SignedDistanceOptions};
-use expansion::{Expanded, expand};
-pub(crate) use faces::{ProjectedFace, is_around_zero};
-use near_contact::NEAR;
-pub(crate) use near_contact::{NearContact, is_near_contact, near_contact_of};
-pub(crate) use room::{FromContact, across_corners, look_after, room_within};
-use uncertainty::error_of_points;
-pub(crate) use uncertainty::{Uncertainty, slack};
-use witness::{Ends, MetPoint};
+pub(crate) use near::{FromContact, NearContact, ProjectedFace, Uncertainty, across_corners};
+pub(crate) use near::{look_after, near_contact_of, room_within};
 
 /// The question about two bodies, and when the search may stop.
 pub(crate) struct Wanted<V: Vector> {
@@ -52,18 +40,19 @@ pub(crate) struct Wanted<V: Vector> {
 #[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct RareInDistances<V: Vector> {
     look_near: fn(&mut Cores<'_, V>, &Wanted<V>, Option<&Gjk<V>>) -> bool,
-    reach_closely: fn(&mut Cores<'_, V>, &Wanted<V>, &mut Gjk<V>, End, &mut Observer<'_, V>) -> Separation<V>,
+    /// The depth, where it is asked for.
+    reach_closely: Option<fn(&mut Cores<'_, V>, &Wanted<V>, &mut Gjk<V>, End, &mut Observer<'_, V>) -> Separation<V>>,
 }
 
 impl<V: Vector> RareInDistances<V> {
     pub(crate) const TABLE: Self =
-        Self { look_near: |cores, wanted, state| cores.look_near(wanted, state), reach_closely };
+        Self { look_near: |cores, wanted, state| cores.look_near(wanted, state), reach_closely: None };
 }
 
 /// The question about bodies that overlap.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum OfOverlap {
-    /// Only whether they do. The depth is computed if nothing else decides it.
+    /// Only whether they do.
     Known,
     Depth,
     /// The depth, and near contact only as exactly as the search itself gives it.
@@ -158,12 +147,15 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     let mut state = cores.first_state(options.axis);
     let end = cores.approach(wanted, &mut state, closest, observer);
     is_near |= closest.is_none() && cores.are_near(&mut state);
+    // Where support points alone made no progress, a distance is measured again, however far apart the bodies are.
+    let is_stalled = !IS_DEPTH && end == End::Stalled && state.length.is_finite();
+    is_near |= is_stalled;
     if is_near && !IS_DEPTH && rare.is_some() && !wanted.is_plain() {
         // Where rounding decides, it has to decide alike wherever a query begins.
         return separation::<V, IS_DEPTH>(cores, &wanted.plain(), observer);
     }
     if is_near
-        && closest.is_none()
+        && (closest.is_none() || is_stalled)
         && tells_all(cores, Some(&state))
         && let Some(near) = &cores.near
     {
@@ -172,10 +164,10 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     let is_known = if IS_DEPTH {
         end == End::Separated && cores.is_well_apart(state.length)
     } else {
-        end != End::Stalled && !(is_near && (rare.is_none() || cores.near.is_some()))
+        end != End::Stalled && !(is_near && rare.is_none())
     };
-    if !is_known && let Some(rare) = rare {
-        return (rare.reach_closely)(cores, wanted, &mut state, end, observer);
+    if !is_known && let Some(reach) = rare.and_then(|rare| rare.reach_closely) {
+        return reach(cores, wanted, &mut state, end, observer);
     }
     let mut known = Separation::of_gjk(cores, &mut state, end);
     let is_full = end == End::Overlap && state.simplex.points().len() > V::DIM;
@@ -195,58 +187,6 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
         known.status = Status::Stalled;
     }
     known
-}
-
-/// The separation of cores that overlap or nearly touch, after a search for their closest points.
-#[inline(never)]
-fn reach_closely<V: Vector>(
-    cores: &mut Cores<'_, V>,
-    wanted: &Wanted<V>,
-    state: &mut Gjk<V>,
-    mut end: End,
-    observer: &mut Observer<'_, V>,
-) -> Separation<V> {
-    let options = &wanted.options;
-    let is_rounded = !cores.is_peeled() && cores.radius() > Scalar::ZERO;
-    let known = if is_rounded && end == End::Overlap { cores.closed_form(options.axis) } else { None };
-    let known = if let Some(known) = known {
-        Separation::of_closed_form(known)
-    } else {
-        // Half of the allowed support points is left for a second run.
-        let may_repeat =
-            end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
-        if may_repeat && !cores.is_peeled() && cores.peel() {
-            *state = cores.first_state(options.axis);
-            let wanted = Wanted::new(OfOverlap::Depth, *options, wanted.rare);
-            end = cores.approach(&wanted, state, None, observer);
-        }
-        if !cores.is_well_apart(state.length) {
-            cores.sharpen();
-        }
-        let is_apart = end == End::Separated || !state.length.is_finite();
-        let expanded = if is_apart { None } else { expand(cores, state, options, observer) };
-        // If the cores are apart after all, GJK's points are nearer than those of a facet.
-        let leads_out = |expanded: &&Expanded<V>| end == End::Overlap || !(expanded.way.h < Scalar::ZERO);
-        let known = match expanded.as_ref().filter(leads_out) {
-            Some(expanded) => Separation::of_expansion(expanded),
-            None => {
-                let by_gjk = Separation::of_gjk(cores, state, end);
-                // A look near contact that has left more than its errors between the bounds may still know the gap
-                // better. If bodies that overlap are apart without their rolling balls, it only knows that they meet.
-                let near = cores.near.as_ref().filter(|near| is_apart && near.gap.is_finite());
-                let is_narrower =
-                    |by_look: &Separation<V>| !(by_gjk.outer - by_gjk.inner <= by_look.outer - by_look.inner);
-                near.map(|near| Separation::of_near_contact(cores, near)).filter(is_narrower).unwrap_or(by_gjk)
-            }
-        };
-        match expanded {
-            Some(Expanded { way, .. }) => known.up_to(cores, state, way),
-            None if is_apart => known,
-            None => Separation { status: Status::Stalled, ..known },
-        }
-    };
-    let known = known.with_best_plane(cores, state);
-    if wanted.is_depth() { known } else { known.with_common_points(cores, state) }
 }
 
 impl<V: Vector> Separation<V> {
@@ -270,82 +210,6 @@ impl<V: Vector> Separation<V> {
             status: end.status(),
             unexpanded: 0,
         }
-    }
-
-    /// By a measurement near contact. The points of the surfaces are between those of the cores, from which the plane
-    /// may lean by the root of the rounding.
-    #[cold]
-    fn of_near_contact(cores: &Cores<'_, V>, near: &NearContact<V>) -> Self {
-        let &NearContact { ref frame, points, normal, gap, lower, upper, .. } = near;
-        let between = (points.a - points.b + frame.offset).unit().unwrap_or(normal);
-        // Both cores may have lost their rolling balls, which are in their radii then.
-        let Pair { core_a, core_b, .. } = &cores.pair;
-        let aside = |whole: V::Scalar, part: V::Scalar| (normal * part - between * whole) * frame.per_unit;
-        let radius = cores.radius() * frame.per_unit;
-        Self {
-            u: -normal,
-            depth: -gap - radius,
-            inner: -upper - radius,
-            outer: -lower - radius,
-            axis: normal,
-            points: PointPair {
-                a: points.a + aside(core_a.radius, cores.radii[0]),
-                b: points.b - aside(core_b.radius, cores.radii[1]),
-            },
-            overlap: Some(near.overlap() == Some(true)),
-            status: Status::Converged,
-            unexpanded: 0,
-        }
-    }
-
-    fn of_closed_form(ClosedForm { u, depth, inner, outer, points }: ClosedForm<V>) -> Self {
-        Self { u, depth, inner, outer, axis: -u, points, overlap: None, status: Status::Converged, unexpanded: 0 }
-    }
-
-    /// By the ends of the way out that an expansion has found.
-    fn of_expansion(
-        &Expanded { way, ends: Ends { u, depth, points }, inner, status, unexpanded }: &Expanded<V>,
-    ) -> Self {
-        Self { u, depth, inner, outer: way.h, axis: -way.u(), points, overlap: None, status, unexpanded }
-    }
-
-    /// The same with the nearer one of the plane that ends a way out and the best one that GJK has come to.
-    fn up_to(self, cores: &Cores<'_, V>, state: &mut Gjk<V>, way: WayOut<V>) -> Self {
-        let by_way = way.h + cores.error_along(way.u());
-        // NaN is no bound.
-        let plane = cores.best_plane(state);
-        let plane = plane.filter(|&(outer, n)| outer <= by_way && self.lies_across(n, cores.gap(outer), cores));
-        let (outer, axis) = plane.unwrap_or((by_way, -way.u()));
-        Self { outer, axis, ..self }
-    }
-
-    /// Whether the points of the bodies are apart across a plane, by its axis into the difference and the lower bound
-    /// that it proves: if it keeps the bodies apart, or else to rounding. Of ways out that are equally short, another
-    /// plane may end another one.
-    fn lies_across(&self, axis: V, lower: V::Scalar, cores: &Cores<'_, V>) -> bool {
-        lower > Scalar::ZERO || (self.u + axis).norm() * self.value(cores).abs() <= cores.noise() * cores.scale()
-    }
-
-    /// The same with the plane of the measurement near contact, and then GJK's best one, if they prove more and have
-    /// the points across them.
-    #[cold]
-    fn with_best_plane(mut self, cores: &Cores<'_, V>, state: &Gjk<V>) -> Self {
-        let Some(near) = &cores.near else { return self };
-        let radius = cores.radius() * near.frame.per_unit;
-        let by_near = (-near.lower - radius, near.normal);
-        for (outer, axis) in [by_near].into_iter().chain(cores.best_plane(state)) {
-            // NaN is no bound.
-            if outer < self.outer && self.lies_across(axis, cores.gap(outer), cores) {
-                (self.outer, self.axis) = (outer, axis);
-            }
-        }
-        self
-    }
-
-    /// The same with GJK's points, if cores overlap and those are nearer to one another than the ends of the way out.
-    fn with_common_points(self, cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
-        let MetPoint { point, points, .. } = MetPoint::new(cores, state);
-        if point.norm() < self.depth { Self { points, ..self } } else { self }
     }
 
     /// The signed distance of the bodies along the normal, in the world's unit, as it is measured.
@@ -470,6 +334,35 @@ impl<V: Vector> Separation<V> {
         let share = |of: V::Scalar| v * (of / radius).min(Scalar::ONE);
         [a - share(cores.radii[0]), b + share(cores.radii[1])]
     }
+}
+
+/// The point of the difference next to zero of those that GJK knows. Where cores are well in one another nothing asks
+/// for it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MetPoint<V: Vector> {
+    pub(super) point: V,
+    /// The points of both cores that it is made of.
+    pub(super) points: PointPair<V>,
+    /// Zero is certain to be no farther from the difference than this.
+    pub(super) reached: V::Scalar,
+}
+
+impl<V: Vector> MetPoint<V> {
+    #[inline(never)]
+    pub(super) fn new(cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
+        state.ensure_measured();
+        let (points, sum) = (state.simplex.weighted_witness(), state.simplex.weight());
+        let point = state.simplex.weighted_point() / sum;
+        let is_known = state.length.is_finite() && sum > V::Scalar::ZERO;
+        Self { point, points, reached: if is_known { cores.greatest_length(point) } else { V::Scalar::infinity() } }
+    }
+}
+
+/// The rounding of a signed distance in the world's unit: unit vectors are so to 2ε, and the sum of the radii and the
+/// two sums that the radii and the length go into round to half of that.
+#[inline(always)]
+pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
+    S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
 }
 
 /// The signed distance of shapes whose cores are apart by more than a few errors, and whose closest points are known

@@ -18,8 +18,7 @@ use convex_support::{Scalar, Vector};
 use super::bracket::Bracket;
 use super::{RayContact, Stop};
 use crate::gjk::Progress;
-use crate::separation::is_around_zero;
-use crate::simplex::{Closest, MAX_POINTS, Simplex, project_rarely};
+use crate::simplex::{Closest, MAX_POINTS, Simplex, is_around_zero, project_rarely};
 use refine::refine;
 use swept_simplex::entry;
 

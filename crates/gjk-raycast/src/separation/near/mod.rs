@@ -7,31 +7,26 @@
 //! The search begins at the offset of the origins, whatever axis the query began at, and the [larger body comes
 //! first](super::order). So all queries about one pair decide alike.
 
+mod answer;
+mod aside;
+pub(super) mod faces;
+mod room;
+pub(super) mod uncertainty;
+
 use convex_support::numerics::bound::{raised, roundings, roundings_of};
 use convex_support::numerics::twofold::{dot_minus, lost_in_sum};
 use convex_support::{Core, CoreKind, Scalar, Vector};
 use num_traits::Float;
 
-use super::faces::{ProjectedFace, about_edge, across_faces, is_around_zero};
-use super::uncertainty::Uncertainty;
 use crate::body::{AnyPair, Both, CastBody as _, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
 use crate::shape::Shape;
-
-/// How many errors of distance or depth still count as near contact.
-pub(crate) const NEAR: f64 = 16.0;
-
-/// Whether bodies may be nearer to contact than a few errors, after a search.
-#[inline(always)]
-pub(crate) fn is_near_contact<V: Vector>(state: &mut Gjk<V>, frame: &Frame<V>) -> bool {
-    if state.simplex.points().len() > V::DIM {
-        // A simplex of full dimension has zero inside, perhaps by rounding.
-        return !is_around_zero(state.simplex.points(), frame.error * V::Scalar::from_f64(2.0));
-    }
-    state.ensure_measured();
-    (state.length - frame.radius).abs() < frame.error * V::Scalar::from_f64(NEAR)
-}
+use crate::simplex::is_around_zero;
+pub(crate) use faces::ProjectedFace;
+use faces::{about_edge, across_faces};
+pub(crate) use room::{FromContact, across_corners, look_after, room_within};
+pub(crate) use uncertainty::{SUM, Uncertainty};
 
 /// The result about bodies near contact; lengths in units of the frame, from body to body.
 #[derive(Clone, Copy)]
@@ -103,7 +98,7 @@ pub(crate) fn near_contact_of<V: Vector>(
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(pair, offset, size);
-    let near = near_contact(pair, &frame, size, None, max_iterations)?;
+    let near = near_contact(pair, &frame, size, None, max_iterations, false)?;
     Some(if shapes.is_swapped { near.reversed() } else { near })
 }
 
@@ -111,7 +106,8 @@ pub(crate) fn near_contact_of<V: Vector>(
 /// be found, or numbers are out of range.
 ///
 /// An earlier search may have begun where all do: without an axis of its own, and with no tolerance but the noise.
-/// Then it is continued; otherwise it is repeated.
+/// Then it is continued; otherwise it is repeated. Where it is to decide whether they have a point in common, it looks
+/// at them [from aside](aside) too.
 #[cold]
 #[inline(never)]
 pub(crate) fn near_contact<V: Vector>(
@@ -120,6 +116,7 @@ pub(crate) fn near_contact<V: Vector>(
     size: V::Scalar,
     begun: Option<&Gjk<V>>,
     max_iterations: usize,
+    is_to_decide: bool,
 ) -> Option<NearContact<V>> {
     if !frame.error.is_finite() {
         return None;
@@ -134,7 +131,8 @@ pub(crate) fn near_contact<V: Vector>(
     {
         return Some(known);
     }
-    seen.search(pair, begun, size, max_iterations)
+    let (near, state) = seen.search(pair, begun, size, max_iterations)?;
+    Some(if is_to_decide && !near.is_settled() { seen.decided(pair, near, &state, max_iterations) } else { near })
 }
 
 /// GJK from the closest points, where they are known in closed form, or from the offset of the origins to the noise.
@@ -263,6 +261,7 @@ impl<V: Vector> Known<V> {
     }
 
     /// `n·(a − b + offset)`, rounded once: the products are added up in twice the precision.
+    #[inline(never)]
     fn level(&self, n: V, PointPair { a, b }: PointPair<V>) -> V::Scalar {
         let parts = (0..V::DIM).flat_map(|i| [a, -b, self.frame.offset, self.lost].map(|part| (n.get(i), part.get(i))));
         dot_minus(parts, V::Scalar::ZERO)
@@ -292,14 +291,14 @@ impl<V: Vector> Known<V> {
         found.is_separated().then_some(found)
     }
 
-    /// The result of GJK, as it was begun or from where all queries begin.
+    /// The result of GJK, as it was begun or from where all queries begin, and its state.
     fn search(
         &self,
         pair: &mut AnyPair<'_, V>,
         begun: Option<&Gjk<V>>,
         size: V::Scalar,
         max_iterations: usize,
-    ) -> Option<NearContact<V>> {
+    ) -> Option<(NearContact<V>, Gjk<V>)> {
         let frame = &self.frame;
         let mut state = match begun {
             Some(&begun) => begun,
@@ -307,10 +306,11 @@ impl<V: Vector> Known<V> {
         };
         state.ensure_measured();
         if is_around_zero(state.simplex.points(), self.error_of_corners) {
-            return Some(overlapping(&state, frame));
+            return Some((overlapping(&state, frame), state));
         }
         let seen = |state: &Gjk<V>, end, found| {
-            near_contact_at(frame, found, (end, state.iterations), (state.simplex.weighted_witness(), state.length))
+            let met = (state.simplex.weighted_witness(), state.length);
+            (near_contact_at(frame, found, (end, state.iterations), met), *state)
         };
         let before = self.best_plane(pair, &state);
         let is_settled = |(plane, upper): &(SupportPlane<V>, V::Scalar)| {
@@ -326,7 +326,7 @@ impl<V: Vector> Known<V> {
         let begun = state;
         let end = go_on(&mut state, pair, frame, max_iterations);
         if is_around_zero(state.simplex.points(), self.error_of_corners) {
-            return Some(overlapping(&state, frame));
+            return Some((overlapping(&state, frame), state));
         }
         let mut best = self.best_plane(pair, &state);
         // Within rounding a search may go astray, and end around zero, or where no plane is as far as its points.
@@ -390,6 +390,7 @@ impl<V: Vector> Known<V> {
     }
 
     /// The plane across `n` that supports the difference.
+    #[inline(never)]
     fn plane(&self, pair: &mut AnyPair<'_, V>, n: V) -> Option<SupportPlane<V>> {
         let n = n.unit()?;
         let mut level = self.level(n, pair.support(-n).1);
@@ -405,16 +406,22 @@ impl<V: Vector> Known<V> {
         level.is_finite().then(|| SupportPlane { n, level, error: raised(self.points.along(n) + rounded) })
     }
 
-    /// A bound on the length of the shortest vector found, `Σ wᵢ·(aᵢ − bᵢ + offset) / Σ wᵢ`: whatever the weights, that
-    /// is a vector of the difference. Its coordinates are added up in twice the precision.
-    fn length(&self, state: &Gjk<V>) -> V::Scalar {
-        let x = V::from_fn(|i| {
+    /// The point that a search has ended at, `Σ wᵢ·(aᵢ − bᵢ + offset) / Σ wᵢ`: whatever the weights, that is a point of
+    /// the difference. Its coordinates are added up in twice the precision.
+    #[inline(never)]
+    fn nearest_point(&self, state: &Gjk<V>) -> V {
+        let sums = V::from_fn(|i| {
             let parts = state.simplex.weighted().flat_map(|(weight, PointPair { a, b })| {
                 [a, -b, self.frame.offset, self.lost].map(|part| (weight, part.get(i)))
             });
             dot_minus(parts, V::Scalar::ZERO)
         });
-        let x = x / state.simplex.weight();
+        sums / state.simplex.weight()
+    }
+
+    /// A bound on its length.
+    fn length(&self, state: &Gjk<V>) -> V::Scalar {
+        let x = self.nearest_point(state);
         // The sum of the weights is right to three roundings, and to one each the sum of the products and the quotient.
         self.length_of(x, roundings_of(5.0, x.abs()))
     }

@@ -1,12 +1,13 @@
-//! The points of two cores that GJK ended with, and those at the ends of the shortest way out.
+//! The points of two cores at the ends of the shortest way out.
 
 use convex_support::{Scalar, Vector};
-use num_traits::Float as _;
 
+use super::WayOut;
 use super::boundary::Boundary;
-use super::cores::{Cores, WayOut};
 use crate::body::PointPair;
 use crate::gjk::Gjk;
+use crate::separation::MetPoint;
+use crate::separation::cores::Cores;
 use crate::simplex::project_rarely;
 
 /// The most facets of a walk.
@@ -105,26 +106,4 @@ fn beside<V: Vector>(boundary: &Boundary<V>, from: usize, point: V) -> usize {
         facet = boundary.across(facet, least);
     }
     facet
-}
-
-/// The point of the difference next to zero of those that GJK knows. Where cores are well in one another nothing asks
-/// for it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct MetPoint<V: Vector> {
-    pub(super) point: V,
-    /// The points of both cores that it is made of.
-    pub(super) points: PointPair<V>,
-    /// Zero is certain to be no farther from the difference than this.
-    pub(super) reached: V::Scalar,
-}
-
-impl<V: Vector> MetPoint<V> {
-    #[inline(never)]
-    pub(super) fn new(cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
-        state.ensure_measured();
-        let (points, sum) = (state.simplex.weighted_witness(), state.simplex.weight());
-        let point = state.simplex.weighted_point() / sum;
-        let is_known = state.length.is_finite() && sum > V::Scalar::ZERO;
-        Self { point, points, reached: if is_known { cores.greatest_length(point) } else { V::Scalar::infinity() } }
-    }
 }

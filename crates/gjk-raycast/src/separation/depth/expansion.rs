@@ -3,13 +3,15 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::WayOut;
 use super::boundary::Boundary;
-use super::cores::{Cores, Vertex, WayOut};
 use super::newton;
-use super::witness::{self, Ends, MetPoint};
+use super::witness::{self, Ends};
 use crate::SignedDistanceOptions;
 use crate::gjk::Gjk;
 use crate::observer::Observer;
+use crate::separation::MetPoint;
+use crate::separation::cores::{Cores, Vertex};
 use crate::simplex::{MAX_POINTS, project_rarely};
 use crate::{Iterate, Status};
 

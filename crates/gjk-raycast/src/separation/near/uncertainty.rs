@@ -8,31 +8,31 @@
 use convex_support::{Rounding, Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{AnyPair, Pair, Shapes};
+use crate::body::AnyPair;
 
 /// The rounding of a point of the difference, in units of ε times the coordinates of the cores and of the offset of
 /// their origins.
 ///
 /// A dot product with a unit vector counts in: its three products and two sums lose 1.5 of their magnitudes. The sums
 /// `a − b` and `a − b + o` lose 0.5 each.
-const SUM: f64 = 2.6;
+pub(crate) const SUM: f64 = 2.6;
 const OFFSET: f64 = 2.1;
 
 /// A bound on the error of points of the difference of two cores, coordinate by coordinate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Uncertainty<V: Vector> {
     /// A bound on the coordinates of the sum of points of both shapes.
-    pub(super) extent: V,
+    pub(crate) extent: V,
     /// What both shapes state, and its length.
     stated: V,
-    pub(super) stated_length: V::Scalar,
+    pub(crate) stated_length: V::Scalar,
     /// What rounding has lost besides.
     lost: V,
 }
 
 impl<V: Vector> Uncertainty<V> {
     /// What the shapes state, in the unit: of points that are added up without rounding.
-    pub(super) fn new(pair: &AnyPair<'_, V>, per_unit: V::Scalar) -> Self {
+    pub(crate) fn new(pair: &AnyPair<'_, V>, per_unit: V::Scalar) -> Self {
         let Self { extent, stated, stated_length, lost } = Self::of(pair.shapes.each().map(|shape| shape.rounding()));
         let stated_length = stated_length.min(pair.error()) * per_unit;
         Self { extent: extent * per_unit, stated: stated * per_unit, stated_length, lost }
@@ -52,19 +52,19 @@ impl<V: Vector> Uncertainty<V> {
 
     /// The same where each point is added up in the vectors' own precision, with an exact offset.
     #[inline(always)]
-    pub(super) fn of_sums(self, offset: V) -> Self {
+    pub(crate) fn of_sums(self, offset: V) -> Self {
         let [sum, of_offset] = [SUM, OFFSET].map(|units| V::Scalar::EPSILON * Scalar::from_f64(units));
         self.with(self.extent * sum + offset.abs() * of_offset)
     }
 
     /// The same where so much more is lost.
     #[inline(always)]
-    pub(super) fn with(self, lost: V) -> Self {
+    pub(crate) fn with(self, lost: V) -> Self {
         Self { lost: self.lost + lost, ..self }
     }
 
     /// Whether what the shapes state is much less along one axis than along another.
-    pub(super) fn is_uneven(&self) -> bool {
+    pub(crate) fn is_uneven(&self) -> bool {
         self.stated.min_element() * V::Scalar::from_f64(4.0) < self.stated.max_element()
     }
 
@@ -77,7 +77,7 @@ impl<V: Vector> Uncertainty<V> {
 
     /// A vector along the unit vector `n` for which `n·p`, less its error, is greatest: with `e` the error of the
     /// coordinates, `n·p − Σ eᵢ|nᵢ|` is a sum of the products of `|nᵢ|` and `|pᵢ| − eᵢ`. Zero if none is positive.
-    pub(super) fn most_certain(&self, p: V) -> V {
+    pub(crate) fn most_certain(&self, p: V) -> V {
         let least = self.stated + self.lost;
         p.max(least) - least + (p.min(-least) + least)
     }
@@ -103,30 +103,12 @@ impl<V: Vector> Uncertainty<V> {
     }
 }
 
-/// A bound on the error of points of the difference of two cores of the given size, as a length, in the world's unit:
-/// no less than any [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths,
-/// and the offset of the origins loses half an ε of its own.
-#[inline(always)]
-pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
-    pair: &Pair<'_, T>,
-    size: V::Scalar,
-) -> V::Scalar {
-    pair.error() + (size - pair.radius()) * (V::Scalar::EPSILON * Scalar::from_f64(SUM))
-}
-
 /// By how much an error `e` across a direction adds to the length `l` along it, at most: `√(l² + e²) − l` is
 /// `e²/(l + √(l² + e²))`, where the root is no less than either.
 #[inline(always)]
 fn added_across<S: Scalar>(length: S, error: S) -> S {
     // Its own rounding. If both are zero, the quotient is no number, and the error the minimum.
     (error * (error / (length + length.max(error))) * (S::ONE + S::EPSILON * S::from_f64(4.0))).min(error)
-}
-
-/// The rounding of a signed distance in the world's unit: unit vectors are so to 2ε, and the sum of the radii and the
-/// two sums that the radii and the length go into round to half of that.
-#[inline(always)]
-pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
-    S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
 }
 
 #[cfg(test)]

@@ -10,9 +10,9 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
-use super::cores::Vertex;
-use super::faces::turned_right;
 use crate::double::{LEAST, Vec3, cross, dot};
+use crate::separation::cores::Vertex;
+use crate::separation::near::faces::turned_right;
 use crate::simplex::{MAX_POINTS, nearest_face};
 
 /// Corners of a facet, of which a polygon's has two and a polyhedron's three.

@@ -3,10 +3,11 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::WayOut;
 use super::boundary::Boundary;
-use super::cores::{Cores, Vertex, WayOut};
 use crate::SignedDistanceOptions;
 use crate::curvature::between;
+use crate::separation::cores::{Cores, Vertex};
 use crate::symmetric::{Across, Symmetric, axes_across, dot, turned_left};
 
 /// The largest tangent of an angle to turn by.

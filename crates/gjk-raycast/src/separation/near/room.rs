@@ -8,8 +8,8 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::faces::turned_right;
-use super::near_contact::{begin, go_on};
 use super::uncertainty::Uncertainty;
+use super::{begin, go_on};
 use crate::body::{AnyPair, Both, Pair, PointPair, Shapes as _};
 use crate::gjk::Frame;
 use crate::shape::Shape;
@@ -107,7 +107,7 @@ pub(crate) fn look_after<V: Vector>(
 
 /// The corners of each face of an octahedron, given both ends of its axes, or of a square: all in the same
 /// orientation as seen from outside, if it is convex.
-fn faces_of_octahedron<V: Vector>(ends: &[[V; 2]; 3]) -> impl Iterator<Item = [V; MAX_POINTS]> {
+pub(super) fn faces_of_octahedron<V: Vector>(ends: &[[V; 2]; 3]) -> impl Iterator<Item = [V; MAX_POINTS]> {
     (0..1_usize << V::DIM).map(|side| {
         let mut corners: [V; MAX_POINTS] =
             array::from_fn(|i| if i < V::DIM { ends[i][side >> i & 1] } else { V::ZERO });

@@ -1,0 +1,124 @@
+//! Whether bodies have a point in common where the [second measurement](super) leaves it open.
+//!
+//! Zero is then within rounding of the boundary of the difference, and a search that begins there cannot tell the face
+//! beside zero from the next ones. From a few errors aside of zero it can. So the difference is looked at from there,
+//! along the normal of the best plane and across it, both ways: from a place outside, GJK finds the face nearest to
+//! that place, and the plane of this face may keep zero out. If no such plane does, the points found are the corners of
+//! an octahedron within the difference, in the plane of a square. Where zero has [room](super::room) in it, the bodies
+//! certainly meet. The points and planes are evaluated without rounding, like all near contact.
+
+use convex_support::numerics::bound::raised;
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use super::faces::{about_edge, across_faces};
+use super::room::{faces_of_octahedron, room_around_zero};
+use super::{Known, NearContact, SupportPlane, run};
+use crate::body::AnyPair;
+use crate::gjk::{End, Frame, Gjk};
+use crate::symmetric::axes_across;
+
+/// How far aside the places are, in errors of the query. An octahedron of which all corners are inside leaves zero 9
+/// errors of room; one that is larger is cut more by the edges of the bodies.
+const ASIDE: f64 = 16.0;
+
+/// The noise of GJK from there, in that of the query: of bodies that are thinner than the noise, it is to find the face.
+const NOISE: f64 = 1.0 / 256.0;
+
+/// The most support points of one look. None of them has to end: any point of the difference will do as a corner, and
+/// any plane.
+const MOST: usize = 16;
+
+impl<V: Vector> Known<V> {
+    /// The same measurement, decided from places aside of zero if that can be; given the search that it ended with.
+    pub(super) fn decided(
+        &self,
+        pair: &mut AnyPair<'_, V>,
+        near: NearContact<V>,
+        state: &Gjk<V>,
+        max_iterations: usize,
+    ) -> NearContact<V> {
+        let (mut near, frame) = (near, &self.frame);
+        if let Some(plane) = self.higher_plane(pair, &near, state) {
+            return near.with_plane(&plane);
+        }
+        // A search that stalled is at a distance from zero.
+        let aside = frame.error * V::Scalar::from_f64(ASIDE) + (near.length - frame.radius).abs();
+        let [u, w] = axes_across(near.normal);
+        let (mut corners, mut is_found) = ([[V::ZERO; 2]; 3], true);
+        for (ends, axis) in corners.iter_mut().zip([near.normal, u, w]).take(V::DIM) {
+            for (corner, axis) in ends.iter_mut().zip([-axis, axis]) {
+                let (place, left) = (axis * aside, max_iterations.saturating_sub(near.iterations));
+                let seen = self.seen_from(pair, place, state, left.min(MOST));
+                near.iterations += seen.iterations;
+                is_found &= !seen.simplex.points().is_empty();
+                if let Some(plane) = self.higher_plane(pair, &near, &seen) {
+                    return near.with_plane(&plane);
+                }
+                let point = self.nearest_point(&seen);
+                let (outwards, length) = (place - point, (place - point).norm());
+                // NaN is no corner.
+                *corner = if length <= frame.radius { place } else { point + outwards * (frame.radius / length) };
+            }
+        }
+        if is_found && !near.is_separated() {
+            // A corner is right to 16 roundings of its largest part, besides the errors of its points.
+            let all = corners.iter().flatten().fold(frame.radius, |most, corner| most.max(corner.abs().max_element()));
+            let rounded = V::splat((all + frame.radius) * (V::Scalar::EPSILON * V::Scalar::from_f64(8.0)));
+            let known = self.points.with(rounded);
+            let error = |u: V| raised(known.along(u));
+            let room = room_around_zero(faces_of_octahedron(&corners), error, |_| Scalar::ONE);
+            if room > Scalar::ZERO {
+                (near.end, near.overlaps_certainly, near.upper) = (End::Overlap, true, near.upper.min(-room));
+            }
+        }
+        near
+    }
+
+    /// GJK as seen from a place near zero, which begins with the corners that a search from zero has ended with.
+    fn seen_from(&self, pair: &mut AnyPair<'_, V>, place: V, state: &Gjk<V>, max_iterations: usize) -> Gjk<V> {
+        let (mut seen, known) = (Gjk::new(place), &state.simplex);
+        for ((&point, &along), &witness) in known.points().iter().zip(known.along()).zip(known.witnesses()) {
+            seen.simplex.push(point - place, along, witness);
+        }
+        seen.ensure_measured();
+        if seen.length > self.frame.noise {
+            let (offset, noise) = (self.frame.offset - place, self.frame.noise * Scalar::from_f64(NOISE));
+            let (frame, first) = (Frame { offset, noise, radius: Scalar::ZERO, ..self.frame }, seen.normal);
+            run(&mut seen, pair, frame, first, max_iterations);
+            seen.ensure_measured();
+        }
+        seen
+    }
+
+    /// A plane across what a search has ended with that is certainly beyond the radii, and beyond the plane known.
+    fn higher_plane(
+        &self,
+        pair: &mut AnyPair<'_, V>,
+        near: &NearContact<V>,
+        state: &Gjk<V>,
+    ) -> Option<SupportPlane<V>> {
+        let (points, x) = (state.simplex.points(), self.nearest_point(state));
+        let edge = if let [p, q] = *points { q - p } else { V::ZERO };
+        let beside = if edge == V::ZERO { x } else { x - edge * (edge.dot(x) / edge.length_squared()) };
+        let about = (V::DIM == 3 && edge != V::ZERO).then(|| about_edge(edge, x));
+        let faces = across_faces(state.simplex.witnesses(), state.axis);
+        let planes = [beside, state.axis].into_iter().chain(faces).chain(about.into_iter().flatten());
+        let mut best: Option<SupportPlane<V>> = None;
+        let mut least = near.lower.max(V::Scalar::ZERO) + self.frame.radius;
+        for n in planes {
+            if let Some(plane) = self.plane(pair, n).filter(|plane| plane.is_beyond(least)) {
+                (least, best) = (plane.certain(), Some(plane));
+            }
+        }
+        best
+    }
+}
+
+impl<V: Vector> NearContact<V> {
+    /// The same with a plane that proves more.
+    fn with_plane(self, &SupportPlane { n: normal, level, error }: &SupportPlane<V>) -> Self {
+        let gap = level - self.frame.radius;
+        Self { normal, gap, lower: gap - error, upper: self.upper.max(gap - error), ..self }
+    }
+}
