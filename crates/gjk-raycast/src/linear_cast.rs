@@ -298,7 +298,7 @@ fn answer<V: Vector>(
     let (velocities, axis) = ([motion.velocity_a, motion.velocity_b], options.warm_start.map(|warm| warm.axis));
     let &LinearCastOptions { max_iterations, sub_algorithm, .. } = options;
     let mut start = StartingPair { a, b, velocities, target, slack: zero, axis, max_iterations, sub_algorithm };
-    // Where only deeper motions count, what is known of the start is looked for below.
+    // The bodies overlap at the start, and any contact counts. `only_if_deeper` measures the start for itself.
     if let Outcome::Hit(Impact { time, normal: None, .. }) = answer.outcome
         && time == zero
         && options.start_in_contact == StartInContact::Report

@@ -194,8 +194,8 @@ compiled_once! {
 }
 
 compiled_once! {
-    /// The known answers of rays that end at some parameter. If only the answer for a ray's line is known, and not for
-    /// the ray, it is unknown from here on.
+    /// Writes the certain answers of lines as answers of rays, which begin at 0 and stop at `end`. Where a line enters
+    /// within rounding of either, its answer tells nothing of the ray: that ray is marked to be cast alone.
     fn scatter<V>(
         lines: &mut Lines<<V as Vector>::Scalar>,
         end: <V as Vector>::Scalar,

@@ -11,9 +11,11 @@ use num_traits::Float as _;
 ///
 /// > s·u² − t·u·w = −u·r,   t·w² − s·u·w = w·r,
 ///
-/// if `s` and `t` are from −1 to 1. Else one of them is at an end: the first is cut there, and then each is told by the
-/// other. Points of parallel segments are as good as others. If `u` or `w` is zero, any number will do, and what is not
-/// one is cut to one.
+/// if both `s` and `t` are between −1 and 1. Otherwise one of the points is an end of its segment. So the solution `t`
+/// is clamped to the interval, `s` follows from that `t` by the first equation and is clamped too, and the last `t`
+/// follows from that `s` by the second one. The determinant is zero for parallel segments, which have many closest
+/// pairs; if `u` or `w` is zero, any `s` or `t` gives the same point. A quotient may then be NaN, and clamping makes a
+/// number of it that will do.
 ///
 /// Segments given the other way round have the same points, to the last bit.
 #[inline(never)]

@@ -98,8 +98,9 @@ compiled_once! {
     }
 }
 
-/// [`signed_distance`] with the normal of the plane that proves its lower bound. Near contact it is only as accurate
-/// as the search itself, since a search in time measures again a moment later.
+/// [`signed_distance`] with the normal of the plane that proves its lower bound, for searches in time. Near contact it
+/// leaves out the second measurement, and its bounds have the errors of GJK: the caller looks at the bodies again a
+/// moment later, and needs exact numbers only of the last look.
 #[inline]
 pub(crate) fn rough_signed_distance<V: Vector>(
     shapes: &dyn Shapes<Vector = V>,

@@ -463,8 +463,10 @@ impl<'a, V: Vector> Bracket<'a, V> {
         Some(RayContact { mu: self.low(), normal, witness })
     }
 
-    /// The contact where the line passes the core's `point` by the vector `v` across it, if that is no longer than the
-    /// radius and `within`; no plane need tell that. The normal is that of a plane along the line, where one is known.
+    /// The contact of a line that grazes the body: it passes the core's `point` by the vector `v` across the line, and
+    /// `v` is no longer than the radius and `within`. Then the line is no farther than `within` from a point of the body,
+    /// whether or not a plane proves a lower bound there. The `normal` is that of a plane along the line, if one is
+    /// known.
     pub(super) fn close_beside(
         &mut self,
         v: V,
@@ -521,8 +523,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
         (self.gap_to_hull(slope) <= wanted).then(|| RayContact { mu, normal: self.normal, witness: witness() })
     }
 
-    /// The contact where the last plane is crossed, where the line has points of the body on both sides of it, to
-    /// within `error` across a surface that it meets at the cosine `slope`.
+    /// The contact where the last plane is crossed, given that points of the body surround the line there: the surface
+    /// between them is met at the cosine `slope`, and is known to within `error` across itself.
     pub(super) fn close_between(&mut self, error: V::Scalar, slope: V::Scalar, witness: PointPair<V>) -> RayContact<V> {
         let Bound { at, spread, .. } = self.low.bound;
         let is_crossed_here = error == Scalar::ZERO && spread > Scalar::ZERO;

@@ -163,7 +163,8 @@ fn latest_entry<V: Vector>(
 fn from_contact<V: Vector>(near: &NearContact<V>) -> FromContact<V> {
     let &NearContact { normal: n, lower, upper, frame: Frame { scale, .. }, .. } = near;
     let upper = upper.max(V::Scalar::ZERO);
-    // Of a vector no longer than `upper`, this is left across a unit vector along which it is at least `lower`.
+    // The vector between the closest points is no longer than `upper`, and its part along the normal is at least
+    // `lower`. By Pythagoras its part across the normal is no longer than this.
     let across = if near.is_separated() { raised(((upper - lower) * (upper + lower)).sqrt()) } else { upper };
     let along = if near.is_separated() { upper } else { V::Scalar::ZERO };
     FromContact { n, along: along * scale, across: across * scale, length: upper * scale }
@@ -223,12 +224,16 @@ const AT_EDGE: f64 = 1.0;
 
 /// Where a ray enters whose source is near the target, and which closes in with a `speed`.
 ///
-/// Let `e` be the vector from a point of the target to the source, and the target contain, about the ray after `λ`,
-/// that vector `k` times: a point of the target is opposite to the first one, and the segment between both crosses the
-/// ray after `λ/(1 + k)`, since the target is convex. For the same reason, where the source is no farther from it than
-/// `g`, and the ray is after `λ`, the distance grows from there on. In the middle between the entry and the exit the
-/// ray is at least half as deep as anywhere: each look that finds it outside bounds the exit, and the next one is
-/// halfway there.
+/// Example: a ball rests on a floor, and a ray from the point of contact goes into the floor at a small angle. Whether
+/// the source is in the floor is rounding; a bound on the entry needs a place `x(λ)` of the ray that is certainly in it.
+///
+/// Let `p` be the point of the target closest to the source `s`, and `e = s − p`. A look at `x(λ)` finds a number `k`
+/// for which the point `q = x(λ) + k·e` is in the target. The source is at `p + e`, so that the segment from `p` to `q`
+/// crosses the ray, after `λ/(1 + k)`. The target is convex, and the crossing is in it.
+///
+/// If `x(λ)` is farther from the target than `s` is, the distance, a convex function along the ray, grows from there
+/// on, and the ray left the target before `λ`. Halfway between the entry and the exit the ray is at least half as deep
+/// as anywhere. So each look that finds the ray outside bounds the exit, and the next look is at half that parameter.
 fn entry<V: Vector>(
     [a, b]: [Shape<'_, V>; 2],
     direction: V,
