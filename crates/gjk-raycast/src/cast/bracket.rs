@@ -464,9 +464,9 @@ impl<'a, V: Vector> Bracket<'a, V> {
     }
 
     /// The contact of a line that grazes the body: it passes the core's `point` by the vector `v` across the line, and
-    /// `v` is no longer than the radius and `within`. Then the line is no farther than `within` from a point of the body,
-    /// whether or not a plane proves a lower bound there. The `normal` is that of a plane along the line, if one is
-    /// known.
+    /// `v` is no longer than the radius and `within`. Then the line is no farther than `within` from a point of the
+    /// body, whether or not a plane proves a lower bound there. The `normal` is that of a plane along the line, if one
+    /// is known.
     pub(super) fn close_beside(
         &mut self,
         v: V,

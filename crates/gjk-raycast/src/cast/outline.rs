@@ -9,9 +9,9 @@
 //! τ(0) ≤ μ + (h − μ)·e/(e + m).
 //! ```
 //!
-//! The corners of the polygon are also known only to `e`. An error along the line raises the right side by `e`; an error
-//! across the line brings a side nearer, so that `e` is subtracted from the distance of every side. The polygon has to
-//! be wide and need not be near the entry: support points across the line will do for its corners.
+//! The corners of the polygon are also known only to `e`. An error along the line raises the right side by `e`; an
+//! error across the line brings a side nearer, so that `e` is subtracted from the distance of every side. The polygon
+//! has to be wide and need not be near the entry: support points across the line will do for its corners.
 //!
 //! If the outline itself is within an error of the line, the ray may miss.
 //!

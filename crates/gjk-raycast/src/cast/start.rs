@@ -225,7 +225,8 @@ const AT_EDGE: f64 = 1.0;
 /// Where a ray enters whose source is near the target, and which closes in with a `speed`.
 ///
 /// Example: a ball rests on a floor, and a ray from the point of contact goes into the floor at a small angle. Whether
-/// the source is in the floor is rounding; a bound on the entry needs a place `x(λ)` of the ray that is certainly in it.
+/// the source is in the floor is rounding; a bound on the entry needs a place `x(λ)` of the ray that is certainly in
+/// it.
 ///
 /// Let `p` be the point of the target closest to the source `s`, and `e = s − p`. A look at `x(λ)` finds a number `k`
 /// for which the point `q = x(λ) + k·e` is in the target. The source is at `p + e`, so that the segment from `p` to `q`

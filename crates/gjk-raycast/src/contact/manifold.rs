@@ -244,8 +244,8 @@ impl<V: Vector> Facing<'_, V> {
     }
 
     /// Whether a corner of the overlap lies on the line through its two neighbours, within the slack. It is asked of
-    /// corners at which an edge of one outline crosses an edge of the other: if the two edges lie on one another, rounding
-    /// alone decides where they cross, and the corner means nothing.
+    /// corners at which an edge of one outline crosses an edge of the other: if the two edges lie on one another,
+    /// rounding alone decides where they cross, and the corner means nothing.
     fn is_on_a_line(&self, overlap: &[Clipped<V::Scalar>], i: usize) -> bool {
         let n = overlap.len();
         let at = |i: usize| overlap[i % n].at;

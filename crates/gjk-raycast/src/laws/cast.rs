@@ -152,8 +152,8 @@ impl Casts<'_> {
         }
     }
 
-    /// A converged bracket holds only times at which the bodies are as good as in contact: neither farther apart nor deeper
-    /// than the rounding, which a width in time cannot tell of a hit that grazes.
+    /// A converged bracket holds only times at which the bodies are as good as in contact: neither farther apart nor
+    /// deeper than the rounding, which a width in time cannot tell of a hit that grazes.
     pub(super) fn width(
         &self,
         query: &'static str,
