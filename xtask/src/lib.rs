@@ -18,7 +18,7 @@ pub mod fuzz;
 pub mod judge;
 pub mod mesh;
 pub mod museum;
-mod output;
+pub mod output;
 pub mod paths;
 pub mod plot;
 pub mod prove;

@@ -1,18 +1,31 @@
-//! What becomes of a task whose output nobody takes.
+//! How tasks end.
 
+use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// The exit status of a task that could not write its output, after its word to the person who started it.
+/// The exit status of a task: 0 if everything is right, 1 if not, and 2, after a word to the person who started it, if it
+/// could not be done.
+pub fn ended(outcome: Result<bool, impl Display>) -> ExitCode {
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(why) => {
+            let _ = writeln!(io::stderr(), "error: {why}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The exit status of a task that could not write its output.
 ///
 /// Whoever closes the pipe, as `head` does, has read enough: every task then ends at once, without a word and with
 /// status 0. Any other failure is a status of 2.
-pub(crate) fn failed(what: &str, why: &io::Error) -> ExitCode {
+pub fn failed(what: &str, why: &io::Error) -> ExitCode {
     if why.kind() == io::ErrorKind::BrokenPipe {
         return ExitCode::SUCCESS;
     }
-    let _ = writeln!(io::stderr(), "error: {what}: {why}");
-    ExitCode::from(2)
+    ended(Err(format!("{what}: {why}")))
 }
 
 #[cfg(test)]

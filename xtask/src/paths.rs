@@ -30,9 +30,8 @@ pub fn run(choice: &Choice) -> ExitCode {
     let mut groups = BTreeMap::<String, Vec<EdgeReport>>::new();
     let mut picture = choice.picture.as_deref();
     let read = choice.files.iter().try_for_each(|file| read(file, &mut groups, &mut picture));
-    if let Err(why) = read {
-        let _ = writeln!(io::stderr(), "error: {why}");
-        return ExitCode::from(2);
+    if read.is_err() {
+        return crate::output::ended(read.map(|()| true));
     }
     match print(&groups, &mut io::stdout().lock()) {
         Ok(()) => ExitCode::SUCCESS,

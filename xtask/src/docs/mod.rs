@@ -13,20 +13,15 @@ const LIBRARIES: [&str; 4] = ["convex-support", "gjk-raycast", "lj-ellipsoid", "
 /// Builds the pages, checks them and the notes, and says where they are.
 pub fn run() -> ExitCode {
     let root = root();
-    let checked = |pages: PathBuf| Ok(([missing(root)?, names::missing(root)?, fetched(&pages)?].concat(), pages));
-    match build(root).and_then(checked) {
-        Ok((complaints, pages)) => {
-            for complaint in &complaints {
-                let _ = writeln!(io::stderr(), "error: {complaint}");
-            }
-            let _ = writeln!(io::stdout(), "{}", pages.join("convex_support/index.html").display());
-            if complaints.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(1) }
+    let checked = |pages: PathBuf| {
+        let complaints = [missing(root)?, names::missing(root)?, fetched(&pages)?].concat();
+        for complaint in &complaints {
+            let _ = writeln!(io::stderr(), "error: {complaint}");
         }
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: {why}");
-            ExitCode::from(2)
-        }
-    }
+        let _ = writeln!(io::stdout(), "{}", pages.join("convex_support/index.html").display());
+        Ok(complaints.is_empty())
+    };
+    crate::output::ended(build(root).and_then(checked))
 }
 
 /// The folder of the workspace.

@@ -35,14 +35,7 @@ const LINES_IN: usize = 100;
 
 #[must_use]
 pub fn run(choice: &Choice) -> ExitCode {
-    match follow(choice) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: {why}");
-            ExitCode::from(2)
-        }
-    }
+    crate::output::ended(follow(choice))
 }
 
 /// A row of the table: a library with its files and the number of circles among them, or a question with the files and

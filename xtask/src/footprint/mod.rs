@@ -204,13 +204,7 @@ pub fn run(choice: &Choice) -> ExitCode {
         let note = note::path("choosing-a-method.md");
         note::write(&note, name, &part).map_err(|why| format!("cannot write {}: {why}", note.display()))
     });
-    match written {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: {why}");
-            ExitCode::from(2)
-        }
-    }
+    crate::output::ended(written.map(|()| true))
 }
 
 fn emptied(folder: &Path) -> Result<PathBuf, String> {

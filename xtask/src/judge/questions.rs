@@ -24,8 +24,6 @@ pub struct Question {
     pub id: String,
     /// The kind of questions that it is counted among.
     pub set: &'static str,
-    /// The shape, the pair of shapes, or the file of the suite.
-    pub case: String,
     pub object: Object,
     /// The answer known by construction, or in ninety digits: of the scalar that the query asks for.
     pub truth: Option<f64>,
@@ -78,7 +76,7 @@ pub fn of_file(path: &Path) -> Result<Vec<Question>, String> {
     let read = |line: &str| {
         let object = json::object(line.as_bytes()).map_err(|why| format!("{}: {}", path.display(), why.message))?;
         let id = object.get("id").and_then(Value::as_str).ok_or_else(|| format!("a line has no id: {line}"))?;
-        Ok(Question { id: id.to_owned(), set: "file", case: String::new(), object, truth: None })
+        Ok(Question { id: id.to_owned(), set: "file", object, truth: None })
     };
     text.lines().filter(|line| !line.starts_with('#')).map(read).collect()
 }
@@ -92,7 +90,7 @@ fn question(set: &'static str, case: &str, number: usize, body: Value, truth: Op
     let id = format!("{set}/{case}/{number}").replace(' ', "-");
     let Value::Object(mut object) = body else { unreachable!("a query is an object") };
     object.insert("id".to_owned(), Value::from(id.as_str()));
-    Question { id, set, case: case.to_owned(), object, truth }
+    Question { id, set, object, truth }
 }
 
 fn ray_casts(case: &str, each: usize, questions: &mut Vec<Question>) {

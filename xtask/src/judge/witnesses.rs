@@ -42,8 +42,6 @@ pub struct Witness {
     pub of_motion: f64,
     /// What is nobody's mistake in its precision, in parts of the reach of the scene: that of the query format.
     pub rounding: f64,
-    /// Whether it was asked in this run; answers out of files were given some other time.
-    pub is_measured: bool,
     /// How it was asked.
     pub settings: String,
     pub replies: Vec<Reply>,
@@ -116,7 +114,6 @@ pub fn ours(questions: &[Question], precision: &'static str, mut progress: impl 
         tolerance: 0.0,
         of_motion: 0.0,
         rounding: rounding(precision),
-        is_measured: true,
         settings: "the defaults; shapes behind dyn SupportMap".to_owned(),
         replies: questions.iter().enumerate().map(reply).collect(),
     }
@@ -171,7 +168,6 @@ pub fn from_file(path: &Path, questions: &[Question]) -> Result<Witness, String>
         tolerance: number("tolerance"),
         of_motion: number("of_motion"),
         rounding: rounding(&word("precision")),
-        is_measured: false,
         settings: word("settings"),
         replies: questions.iter().map(reply).collect(),
     })
@@ -184,7 +180,7 @@ mod tests {
 
     fn question(id: &str, query: &str) -> Question {
         let object = json::object(format!(r#"{{"id":"{id}","query":"{query}"}}"#).as_bytes()).expect("JSON");
-        Question { id: id.to_owned(), set: "set", case: String::new(), object, truth: None }
+        Question { id: id.to_owned(), set: "set", object, truth: None }
     }
 
     #[test]
@@ -205,9 +201,8 @@ mod tests {
         fs::write(&file, lines).expect("a file");
         let read = from_file(&file, &questions);
         fs::remove_file(&file).expect("it was there");
-        let Witness { name, tolerance, of_motion, rounding, is_measured, replies, .. } = read.expect("answers");
+        let Witness { name, tolerance, of_motion, rounding, replies, .. } = read.expect("answers");
         assert_eq!((name.as_str(), tolerance, of_motion, rounding), ("someone 1.0", 0.005, 1e-4, 1e-4));
-        assert!(!is_measured, "it was asked some other time");
         let told = |k: usize| match replies[k] {
             Reply::Answer { claim, ns } => Some((claim.flag, claim.scalar, ns.is_finite())),
             _ => None,

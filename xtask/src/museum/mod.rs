@@ -57,20 +57,13 @@ struct Piece {
 pub fn run(choice: Choice) -> ExitCode {
     let pieces = match pieces() {
         Ok(pieces) => pieces,
-        Err(why) => return complain(&why),
+        Err(why) => return output::ended(Err(why)),
     };
     if let Err(why) = print(&pieces) {
         return output::failed("cannot write the table", &why);
     }
-    if let Err(why) = if choice.write { write(&pieces) } else { Ok(()) } {
-        return complain(&why);
-    }
-    if pieces.iter().all(Piece::is_right) { ExitCode::SUCCESS } else { ExitCode::from(1) }
-}
-
-fn complain(why: &str) -> ExitCode {
-    let _ = writeln!(io::stderr(), "error: {why}");
-    ExitCode::from(2)
+    let written = if choice.write { write(&pieces) } else { Ok(()) };
+    output::ended(written.map(|()| pieces.iter().all(Piece::is_right)))
 }
 
 /// Writes the tables and the drawings into the note.

@@ -187,14 +187,7 @@ impl Scope {
 
 /// Validates and writes the report.
 pub fn run(scope: &Scope, chapters: &[Chapter]) -> ExitCode {
-    match validate(scope, chapters) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: {why}");
-            ExitCode::from(2)
-        }
-    }
+    crate::output::ended(validate(scope, chapters))
 }
 
 /// Whether everything was right, or there was nobody to tell.

@@ -50,11 +50,8 @@ struct Step {
 /// Draws the figures into `folder`.
 pub(crate) fn run(folder: &Path) -> ExitCode {
     match draw(folder, &mut io::stdout().lock()) {
-        Err(why) if why.kind() != io::ErrorKind::BrokenPipe => {
-            let _ = writeln!(io::stderr(), "error: cannot write to {}: {why}", folder.display());
-            ExitCode::from(2)
-        }
-        _ => ExitCode::SUCCESS,
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => xtask::output::failed(&format!("cannot write to {}", folder.display()), &why),
     }
 }
 

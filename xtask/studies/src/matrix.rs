@@ -40,13 +40,7 @@ struct Pair {
 }
 
 pub(crate) fn run(choice: &Choice) -> ExitCode {
-    match answer(choice) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: {why}");
-            ExitCode::from(2)
-        }
-    }
+    xtask::output::ended(answer(choice).map(|()| true))
 }
 
 fn answer(choice: &Choice) -> Result<(), String> {

@@ -55,11 +55,8 @@ fn lights(i: u32) -> (Vec3A, Vec3A) {
 /// Renders the picture into a PNG file.
 pub(crate) fn run(file: &Path, width: u32) -> ExitCode {
     match render(file, width, &mut io::stdout().lock()) {
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: cannot write {}: {why}", file.display());
-            ExitCode::from(2)
-        }
         Ok(()) => ExitCode::SUCCESS,
+        Err(why) => xtask::output::failed(&format!("cannot write {}", file.display()), &why),
     }
 }
 

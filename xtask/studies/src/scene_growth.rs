@@ -62,10 +62,7 @@ pub(crate) fn run(choice: &Choice) -> ExitCode {
         written.and_then(|()| write!(io::stdout().lock(), "{}\nMeasured on {}.\n", table(&lines), provenance()));
     match shown {
         Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: cannot write the figures: {why}");
-            ExitCode::from(2)
-        }
+        Err(why) => xtask::output::failed("cannot write the figures", &why),
     }
 }
 

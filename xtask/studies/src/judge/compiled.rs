@@ -77,7 +77,6 @@ impl Library {
             tolerance: self.tolerance,
             of_motion: 0.0,
             rounding: rounding("f32"),
-            is_measured: true,
             settings: self.settings.to_owned(),
             replies: questions.iter().enumerate().map(reply).collect(),
         }

@@ -6,7 +6,6 @@ mod compiled;
 mod parry;
 
 use std::fs;
-use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -59,14 +58,7 @@ const LIBRARIES: &[(&str, Ask)] = &[
 
 /// Judges everybody.
 pub(crate) fn run(scope: &Scope) -> ExitCode {
-    match judge(scope) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: {why}");
-            ExitCode::from(2)
-        }
-    }
+    xtask::output::ended(judge(scope))
 }
 
 /// Whether every bracket holds the truth, and no claim of ours is disproved.

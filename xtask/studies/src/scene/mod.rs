@@ -17,7 +17,7 @@ mod waypoints;
 
 use std::collections::HashMap;
 use std::fs;
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -33,6 +33,7 @@ pub(crate) use self::levels::embedded_levels;
 use self::levels::{Decided, Levels, Pair};
 use self::robot::{Pose, Robot};
 use xtask::mesh::Meshes;
+use xtask::output::ended;
 
 /// The scene that is run where none is named: the robot works among objects and touches none.
 const FREE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/scenes/ur5_free.json");
@@ -167,14 +168,12 @@ struct Outcome {
 /// Which scene to run.
 #[derive(Debug, Args)]
 pub(crate) struct Choice {
-    /// A scene: robot, joints, obstacles, trajectory; without one, a UR5 at work among objects.
+    /// A scene: robot, joints, obstacles, trajectory; without one, a UR5 at work among objects. True overlaps and
+    /// distances, one JSON line per pair, are read from beside it, if they are there.
     #[arg(value_name = "FILE", default_value = FREE, hide_default_value = true)]
     file: PathBuf,
-    /// True overlaps and distances, one JSON line per pair [default: beside FILE, if there]
-    #[arg(long, value_name = "FILE")]
-    truth: Option<PathBuf>,
     /// Instead of a file: a chain of so many links in the plane.
-    #[arg(long, value_name = "LINKS", conflicts_with_all = ["file", "truth"], value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "LINKS", conflicts_with = "file", value_parser = clap::value_parser!(u32).range(1..=1000))]
     planar: Option<u32>,
     /// Where tables and plots go.
     #[arg(long, value_name = "FOLDER", default_value = "target/scene")]
@@ -183,23 +182,16 @@ pub(crate) struct Choice {
 
 /// Runs the scene and writes tables and plots.
 pub(crate) fn run(choice: &Choice) -> ExitCode {
-    let Choice { file, truth, planar, output } = choice;
+    let Choice { file, planar, output } = choice;
     let outcome = match planar {
         Some(links) => planar::run(*links, output).map(|()| true),
-        None => scene(file, truth.as_deref(), output),
+        None => scene(file, output),
     };
-    match outcome {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(why) => {
-            let _ = writeln!(io::stderr(), "error: {why}");
-            ExitCode::from(2)
-        }
-    }
+    ended(outcome)
 }
 
 /// Whether all agrees with the truth, where that is known.
-fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, String> {
+fn scene(file: &Path, folder: &Path) -> Result<bool, String> {
     let start = Instant::now();
     let scene = Scene::read(file)?;
     let fitted = start.elapsed();
@@ -210,7 +202,7 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
     let mut frames = picture::Frames::new(scene.obstacles.iter().map(|o| picture::outline(&o.outer)));
     // The truth of a scene, if it is known, lies beside it.
     let beside = Some(file.with_extension("truth.jsonl")).filter(|path| path.is_file());
-    let mut checked = truth.map(Path::to_path_buf).or(beside).map(|path| truth::Truth::read(&path)).transpose()?;
+    let mut checked = beside.map(|path| truth::Truth::read(&path)).transpose()?;
     for (step, values) in scene.trajectory.iter().enumerate() {
         let links = scene.links_at(values)?;
         let mut row = Row {

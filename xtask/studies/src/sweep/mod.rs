@@ -123,8 +123,7 @@ pub(crate) fn run(scope: &Scope) -> ExitCode {
     let rows = rows(scope, |_| {});
     match write(&rows, &scope.output) {
         Err(why) if why.kind() != io::ErrorKind::BrokenPipe => {
-            let _ = writeln!(io::stderr(), "error: cannot write {}: {why}", scope.output.display());
-            ExitCode::from(2)
+            xtask::output::failed(&format!("cannot write {}", scope.output.display()), &why)
         }
         _ if rows.iter().all(Row::is_right) => ExitCode::SUCCESS,
         _ => ExitCode::FAILURE,

@@ -25,7 +25,6 @@ pub(crate) fn witness(questions: &[Question], mut progress: impl FnMut(usize)) -
         tolerance: 0.0,
         of_motion: 0.0,
         rounding: rounding(precision),
-        is_measured: true,
         settings: "0.31.1; query::{cast_shapes, cast_shapes_nonlinear, distance, contact, intersection_test} and RayCast, \
                    with the tolerances that they come with"
             .to_owned(),
