@@ -584,7 +584,10 @@ impl<'a, V: Vector> Bracket<'a, V> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(super) use tests::bracketed;
+
+#[cfg(test)]
+mod tests {
     use convex_support::glam::DVec3;
     use convex_support::{Cuboid, SupportMap};
 

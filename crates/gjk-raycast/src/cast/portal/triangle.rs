@@ -333,7 +333,7 @@ mod tests {
 
     use super::*;
     use crate::RayCastOptions;
-    use crate::cast::bracket::tests::bracketed;
+    use crate::cast::bracket::bracketed;
     use crate::cast::line::Line;
 
     /// The frame of a ray along −z: a point's coordinates are `u = x`, `v = −y`, `t = −z`.
