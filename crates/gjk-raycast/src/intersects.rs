@@ -96,8 +96,8 @@ options! {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Intersection<V: Vector> {
     /// Whether the shapes have a point in common. This is certain if `status` is [`Status::Converged`], and otherwise a
-    /// guess; [`decided`](Self::decided) tells the two apart. It agrees with [`Distance::overlap`]: shapes that touch,
-    /// to rounding, have a point in common.
+    /// guess; [`decided`](Self::decided) tells the two apart. It agrees with that of
+    /// [`distance`](crate::Distance::overlap): shapes that touch, to rounding, have a point in common.
     pub overlap: bool,
     /// A unit vector along which a plane separates the shapes, pointing from `b` to `a`; `None` where they overlap.
     ///

@@ -18,6 +18,7 @@ pub(crate) trait MayBeLean: Sized {
     type Table: 'static;
     const TABLE: Self::Table;
 
+    /// The table, compiled with the library.
     fn rare() -> Rare<Self>;
 }
 
