@@ -1,12 +1,13 @@
 //! The signed distance of two shapes: how far apart they are, or how deep they overlap.
 
-use convex_support::{Core, SupportMap, Vector, compiled_once};
+use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once};
+use num_traits::Float as _;
 
 use crate::body::{Both, Shapes};
 use crate::observer::Observer;
-use crate::separation::{Cores, OfOverlap, RareInDistances, Wanted, direct, separation};
+use crate::separation::{Cores, OfOverlap, RareInDistances, Separation, Wanted, direct, separation};
 use crate::shape::Shape;
-use crate::{Iterate, SignedDistance, SignedDistanceOptions};
+use crate::{Iterate, SignedDistance, SignedDistanceOptions, Status};
 
 /// The distance of two shapes, or minus their depth if they overlap, with the shortest way out.
 ///
@@ -95,6 +96,40 @@ compiled_once! {
             answer = answer.reversed();
         }
         answer
+    }
+}
+
+impl<V: Vector> Separation<V> {
+    /// The answer to a question about the signed distance.
+    #[inline]
+    fn signed_distance(&self, cores: &Cores<'_, V>, wanted: &Wanted<V>) -> SignedDistance<V> {
+        let (lower, upper, normal) = self.bounds(cores);
+        // Numbers that are not finite, or contradict one another, come from an invalid support map, and bound nothing.
+        let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
+        let infinity = V::Scalar::infinity();
+        let (lower, upper) = if is_bounded { (lower, upper) } else { (-infinity, infinity) };
+        let SignedDistanceOptions { tolerance, limit, depth_limit, .. } = wanted.options;
+        let is_beyond = is_bounded && (lower > limit || -upper > depth_limit);
+        // However the search ended, the width tells.
+        let status = match self.status {
+            _ if is_beyond || upper - lower <= cores.enough(tolerance, lower) => Status::Converged,
+            Status::Converged => Status::Stalled,
+            status => status,
+        };
+        let signed_distance = self.value(cores).max(lower).min(upper);
+        let [point_a, point_b] = self.ends(cores);
+        SignedDistance {
+            signed_distance,
+            lower,
+            upper,
+            normal,
+            point_a,
+            point_b,
+            overlap: signed_distance <= V::Scalar::ZERO,
+            status,
+            iterations: cores.iterations,
+            unexpanded: self.unexpanded,
+        }
     }
 }
 

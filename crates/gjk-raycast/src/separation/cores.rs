@@ -1,5 +1,6 @@
 //! The difference of two cores: its support points, their errors, and the result of GJK on it.
 
+use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, Scalar, Vector};
 use num_traits::Float as _;
 
@@ -30,7 +31,7 @@ pub(crate) struct Cores<'a, V: Vector> {
     /// The rounding of removing the balls from the cores.
     pub(super) peeled_error: V::Scalar,
     /// A bound on the error of points of the difference, as a length, in the unit.
-    pub(super) error: V::Scalar,
+    error: V::Scalar,
     /// The same coordinate by coordinate; `None` as long as the length suffices.
     pub(super) uncertainty: Option<Uncertainty<V>>,
     /// What the offset of the origins has lost, if that is asked.
@@ -63,6 +64,20 @@ impl<'a, V: Vector> Cores<'a, V> {
             near: None,
             iterations: 0,
         }
+    }
+
+    /// Gets the errors of the shapes' points, coordinate by coordinate, which takes longer than many a distance. For a
+    /// horizontal floor they do not depend on its width.
+    #[inline(never)]
+    pub(super) fn sharpen(&mut self) {
+        // Nothing is known about numbers out of range, whatever the shapes state.
+        if self.uncertainty.is_some() || !self.error.is_finite() {
+            return;
+        }
+        let (Pair { core_a, core_b, .. }, Frame { offset, per_unit, .. }) = (&self.pair, self.frame);
+        self.lost_in_offset = lost_in_sum(core_a.origin, -core_b.origin) * per_unit;
+        let known = Uncertainty::new(&self.pair, per_unit).of_sums(offset);
+        self.uncertainty = Some(known.with(self.lost_in_offset.abs()));
     }
 
     /// Whether bodies whose cores are so far apart are nearer to contact than a few errors.
@@ -106,7 +121,7 @@ impl<'a, V: Vector> Cores<'a, V> {
     ///
     /// Rounding takes no more than 5.5 errors: an expansion goes on while the bounds are two apart, both are widened by
     /// one, and by the rounding of the radii and the sum with them, which is three quarters of one.
-    pub(super) fn enough(&self, tolerance: V::Scalar, lower: V::Scalar) -> V::Scalar {
+    pub(crate) fn enough(&self, tolerance: V::Scalar, lower: V::Scalar) -> V::Scalar {
         let may_overlap = self.is_curved() && !(lower > Scalar::ZERO);
         let part = if may_overlap { tolerance.max(Scalar::ZERO) } else { Scalar::ZERO };
         (self.frame.error * Scalar::from_f64(6.0) + self.size * part) * self.scale()

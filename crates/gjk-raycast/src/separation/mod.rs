@@ -103,8 +103,8 @@ pub(crate) struct Separation<V: Vector> {
     points: PointPair<V>,
     /// Whether the bodies have a point in common, to its own error, if the depth does not tell.
     overlap: Option<bool>,
-    status: Status,
-    unexpanded: usize,
+    pub(crate) status: Status,
+    pub(crate) unexpanded: usize,
 }
 
 /// The separation of two cores, and their depth. Both are compiled once for all callers, so that a program without
@@ -212,15 +212,22 @@ impl<V: Vector> Separation<V> {
         }
     }
 
+    /// Whether the points of the bodies are apart across a plane, by its axis into the difference and the lower bound
+    /// that it proves: if it keeps the bodies apart, or else to rounding. Of ways out that are equally short, another
+    /// plane may end another one.
+    pub(super) fn lies_across(&self, axis: V, lower: V::Scalar, cores: &Cores<'_, V>) -> bool {
+        lower > Scalar::ZERO || (self.u + axis).norm() * self.value(cores).abs() <= cores.noise() * cores.scale()
+    }
+
     /// The signed distance of the bodies along the normal, in the world's unit, as it is measured.
     #[inline(always)]
-    fn value(&self, cores: &Cores<'_, V>) -> V::Scalar {
+    pub(crate) fn value(&self, cores: &Cores<'_, V>) -> V::Scalar {
         cores.gap(self.depth)
     }
 
     /// Bounds on it, with the axis of the plane that proves the lower one.
     #[inline(always)]
-    fn bounds(&self, cores: &Cores<'_, V>) -> (V::Scalar, V::Scalar, V) {
+    pub(crate) fn bounds(&self, cores: &Cores<'_, V>) -> (V::Scalar, V::Scalar, V) {
         let (scale, radius) = (cores.scale(), cores.radius());
         let (lower, upper) = (cores.gap(self.outer), cores.gap(self.inner));
         // A product with the unit may be subnormal.
@@ -241,41 +248,10 @@ impl<V: Vector> Separation<V> {
 
     /// The points of both bodies at the ends of the way out.
     #[inline(always)]
-    fn ends(&self, cores: &Cores<'_, V>) -> [V; 2] {
+    pub(crate) fn ends(&self, cores: &Cores<'_, V>) -> [V; 2] {
         let (PointPair { a, b }, scale, [from, to]) = (self.points, cores.scale(), cores.radii);
         let Pair { core_a, core_b, .. } = &cores.pair;
         [core_a.origin + a * scale + self.u * from, core_b.origin + b * scale - self.u * to]
-    }
-
-    #[inline]
-    pub(crate) fn signed_distance(&self, cores: &Cores<'_, V>, wanted: &Wanted<V>) -> SignedDistance<V> {
-        let (lower, upper, normal) = self.bounds(cores);
-        // Numbers that are not finite, or contradict one another, come from an invalid support map, and bound nothing.
-        let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
-        let infinity = V::Scalar::infinity();
-        let (lower, upper) = if is_bounded { (lower, upper) } else { (-infinity, infinity) };
-        let SignedDistanceOptions { tolerance, limit, depth_limit, .. } = wanted.options;
-        let is_beyond = is_bounded && (lower > limit || -upper > depth_limit);
-        // However the search ended, the width tells.
-        let status = match self.status {
-            _ if is_beyond || upper - lower <= cores.enough(tolerance, lower) => Status::Converged,
-            Status::Converged => Status::Stalled,
-            status => status,
-        };
-        let signed_distance = self.value(cores).max(lower).min(upper);
-        let [point_a, point_b] = self.ends(cores);
-        SignedDistance {
-            signed_distance,
-            lower,
-            upper,
-            normal,
-            point_a,
-            point_b,
-            overlap: signed_distance <= V::Scalar::ZERO,
-            status,
-            iterations: cores.iterations,
-            unexpanded: self.unexpanded,
-        }
     }
 
     /// The distance, which is zero if the bodies overlap.

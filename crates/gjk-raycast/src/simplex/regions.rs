@@ -172,3 +172,65 @@ pub(crate) fn cross<V: Vector>(a: V, b: V) -> V {
         a.get(j) * b.get(k) - a.get(k) * b.get(j)
     })
 }
+
+/// Whether zero is in the simplex of some points, even if each is wrong by an error, which is at least `8ε` of the
+/// longest.
+///
+/// It is if it has the same orientation with each face as the corner opposite. This is the sign of a determinant,
+/// which an error `e` of each corner changes by no more than `e·Σ(|q| + e)(|r| + e)` over the pairs of corners of the
+/// face; in the plane `e·Σ(|q| + e)`. Its computation loses no more than as much again.
+///
+/// [`room_within`](crate::separation::room_within()) says by how much, in more than twice the operations, which every
+/// query whose bodies overlap would pay.
+pub(crate) fn is_around_zero<V: Vector>(points: &[V], error: V::Scalar) -> bool {
+    let length = |p: V| p.length() + error;
+    let twice = error * V::Scalar::from_f64(2.0);
+    let mut sides = (0, 0);
+    let mut sees = |determinant: V::Scalar, wrong: V::Scalar| {
+        sides.0 += usize::from(determinant > wrong);
+        sides.1 += usize::from(determinant < -wrong);
+    };
+    match *points {
+        [p, q, r] if V::DIM == 2 => {
+            for [p, q] in [[p, q], [q, r], [r, p]] {
+                sees(p.get(0) * q.get(1) - p.get(1) * q.get(0), twice * (length(p) + length(q)));
+            }
+        }
+        [p, q, r, s] => {
+            let (pq, rs) = (cross(p, q), cross(r, s));
+            let [lp, lq, lr, ls] = [p, q, r, s].map(length);
+            let (sum_pq, sum_rs, product_pq, product_rs) = (lp + lq, lr + ls, lp * lq, lr * ls);
+            sees(q.dot(rs), twice * (product_rs + lq * sum_rs));
+            sees(-p.dot(rs), twice * (product_rs + lp * sum_rs));
+            sees(s.dot(pq), twice * (product_pq + ls * sum_pq));
+            sees(-r.dot(pq), twice * (product_pq + lr * sum_pq));
+        }
+        _ => return false,
+    }
+    sides.0.max(sides.1) == V::DIM + 1
+}
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::{DVec2, DVec3};
+
+    use super::*;
+
+    /// A corner that is wrong by more than zero is from a face may leave zero outside. The bound is a sum over the
+    /// edges of a face, so that zero has to be a few errors within.
+    #[test]
+    fn zero_is_inside_only_beyond_the_error_of_the_corners() {
+        let tetrahedron = |depth: f64| {
+            [DVec3::new(-1.0, -1.0, -depth), DVec3::new(2.0, -1.0, -depth), DVec3::new(-1.0, 2.0, -depth), DVec3::Z]
+        };
+        for depth in [1e-3, 1e-9, 1e-14] {
+            assert!(is_around_zero(&tetrahedron(depth), depth / 64.0), "{depth}");
+            assert!(!is_around_zero(&tetrahedron(depth), depth), "{depth}");
+            assert!(!is_around_zero(&tetrahedron(-depth), 0.0), "{depth}");
+        }
+        let triangle = [DVec2::new(-1.0, -1e-9), DVec2::new(1.0, -1e-9), DVec2::Y];
+        assert!(is_around_zero(&triangle, 1e-11) && !is_around_zero(&triangle, 1e-9));
+        assert!(!is_around_zero(&triangle[..2], 0.0), "a segment has no inside");
+        assert!(!is_around_zero(&[DVec3::NAN; 4], 0.0), "NaN is nowhere");
+    }
+}

@@ -88,7 +88,7 @@ fn reach_closely<V: Vector>(
             None => Separation { status: Status::Stalled, ..known },
         }
     };
-    known.with_best_plane(cores, state)
+    if cores.near.is_some() { known.with_best_plane(cores, state) } else { known }
 }
 
 /// A plane that supports the difference, by the support point, which knows the outward unit normal that it was found

@@ -1,10 +1,8 @@
 //! What a measurement near contact says of the separation of two bodies.
 
-use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Scalar, Vector};
-use num_traits::Float as _;
+use convex_support::Vector;
 
-use super::{NearContact, Uncertainty, near_contact};
+use super::{NearContact, near_contact};
 use crate::Status;
 use crate::body::{Pair, PointPair};
 use crate::gjk::{Frame, Gjk};
@@ -36,13 +34,6 @@ impl<V: Vector> Separation<V> {
             status: Status::Converged,
             unexpanded: 0,
         }
-    }
-
-    /// Whether the points of the bodies are apart across a plane, by its axis into the difference and the lower bound
-    /// that it proves: if it keeps the bodies apart, or else to rounding. Of ways out that are equally short, another
-    /// plane may end another one.
-    pub(crate) fn lies_across(&self, axis: V, lower: V::Scalar, cores: &Cores<'_, V>) -> bool {
-        lower > Scalar::ZERO || (self.u + axis).norm() * self.value(cores).abs() <= cores.noise() * cores.scale()
     }
 
     /// The same with the plane of the measurement near contact, and then GJK's best one, if they prove more and have
@@ -83,19 +74,5 @@ impl<V: Vector> Cores<'_, V> {
         self.iterations += near.iterations.saturating_sub(before);
         // No depth is asked of a distance, which ends here.
         !wanted.is_depth() || near.is_closed()
-    }
-
-    /// Gets the errors of the shapes' points, coordinate by coordinate, which takes longer than many a distance. For a
-    /// horizontal floor they do not depend on its width.
-    #[inline(never)]
-    pub(crate) fn sharpen(&mut self) {
-        // Nothing is known about numbers out of range, whatever the shapes state.
-        if self.uncertainty.is_some() || !self.error.is_finite() {
-            return;
-        }
-        let (Pair { core_a, core_b, .. }, Frame { offset, per_unit, .. }) = (&self.pair, self.frame);
-        self.lost_in_offset = lost_in_sum(core_a.origin, -core_b.origin) * per_unit;
-        let known = Uncertainty::new(&self.pair, per_unit).of_sums(offset);
-        self.uncertainty = Some(known.with(self.lost_in_offset.abs()));
     }
 }

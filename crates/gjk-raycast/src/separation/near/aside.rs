@@ -122,3 +122,28 @@ impl<V: Vector> NearContact<V> {
         Self { normal, gap, lower: gap - error, upper: self.upper.max(gap - error), ..self }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::{DVec3, Vec2};
+    use convex_support::{Cuboid, Posed, Triangle};
+
+    use crate::{DistanceOptions, distance};
+
+    /// A search from zero ends at a simplex with zero on one of its faces, or at a side of a needle that is thinner
+    /// than the noise. Seen from aside, the first is within the difference, and the second beside zero.
+    #[test]
+    fn signs_that_a_search_leaves_open_are_seen_from_aside() -> Result<(), convex_support::InvalidShape> {
+        let cube = Cuboid::new(DVec3::ONE)?;
+        let within = distance(&cube, &Cuboid::new(DVec3::splat(0.5))?, DistanceOptions::default());
+        assert_eq!((within.upper, within.overlap), (0.0, true), "{within:?}");
+
+        let needle = Triangle::new([Vec2::Y, Vec2::new(4.514369e-10, 0.25), Vec2::new(-1.8704648e-8, 0.46499807)])?;
+        let needle = Posed::translated(needle, Vec2::new(-0.00040346384, -0.46299887))?;
+        let point = Posed::translated(Cuboid::new(Vec2::ZERO)?, Vec2::new(-0.00040347216, 0.53700113))?;
+        for beside in [distance(&point, &needle, Default::default()), distance(&needle, &point, Default::default())] {
+            assert!(beside.lower > 0.0 && !beside.overlap, "{beside:?}");
+        }
+        Ok(())
+    }
+}
