@@ -6,9 +6,9 @@ use num_traits::Float as _;
 
 use super::near_contact::{NEAR, NearContact, is_near_contact, near_contact};
 use super::uncertainty::{Uncertainty, error_of_points};
-use super::zonotope::{Zonotope, parallelotope};
 use super::{OfOverlap, Wanted};
 use crate::body::{AnyPair, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::boxes::Zonotope;
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
 use crate::symmetric::Symmetric;
@@ -315,14 +315,12 @@ impl<'a, V: Vector> Cores<'a, V> {
     /// tell them apart at once.
     #[inline(always)]
     pub(super) fn closed_form(&mut self, axis: Option<V>) -> Option<ClosedForm<V>> {
-        let Pair { shapes, core_a, core_b, .. } = &self.pair;
         let reach = self.pair.extent() * self.frame.per_unit;
         if self.frame.offset.length_squared() > reach * reach {
             // Balls about the cores are apart.
             return None;
         }
-        let [a, b] = shapes.each();
-        let parts = [parallelotope(a, core_a)?, parallelotope(b, core_b)?];
+        let parts = self.pair.parallelotopes()?;
         let Frame { offset, per_unit, .. } = self.frame;
         let zonotope = Zonotope::new(&parts, offset, per_unit);
         if zonotope.is_beyond(axis.unwrap_or(offset)) {

@@ -13,7 +13,6 @@ mod newton;
 mod room;
 mod uncertainty;
 mod witness;
-mod zonotope;
 
 use convex_support::numerics::bound::least;
 use convex_support::{Core, Scalar, Vector};
