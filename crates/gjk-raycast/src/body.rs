@@ -1,7 +1,9 @@
 //! Shapes for the algorithms: a core and a radius, relative to the shape's origin and in [units](crate::unit) of its
 //! size.
 
-use convex_support::{CertainCrossing, Core, CoreKind, Hint, LineQuery, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{
+    CertainCrossing, Core, CoreKind, Hint, LineQuery, Parallelotope, Scalar, ScalarOf, SupportMap, Vector,
+};
 
 use crate::segments;
 use crate::shape::{Shape, WithoutLines};
@@ -336,6 +338,18 @@ impl<T: Shapes + ?Sized> Pair<'_, T> {
         };
         // For larger or smaller numbers the closed forms may have left the range of the scalar.
         is_moderate(size).then(|| PointPair { a: a * self.per_unit, b: b * self.per_unit })
+    }
+
+    /// Both cores as parallelotopes, relative to their origins, if they are; a point is one without edges.
+    #[inline]
+    pub(crate) fn parallelotopes(&self) -> Option<[Parallelotope<T::Vector>; 2]> {
+        let of = |shape: Shape<'_, T::Vector>, core: &Core<T::Vector>| match core.kind {
+            CoreKind::Point(at) => Some(Parallelotope::point(at)),
+            CoreKind::Segment { .. } | CoreKind::Polytope => shape.core_parallelotope(),
+            CoreKind::Curved => None,
+        };
+        let [a, b] = self.shapes.each();
+        Some([of(a, self.core_a)?, of(b, self.core_b)?])
     }
 
     /// The vector between the [closest points](Self::closest_points) of bodies whose origins differ by `offset` in the

@@ -1,11 +1,12 @@
 //! Whether two shapes meet.
 
-use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once};
+use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
 use crate::body::{Both, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::boxes::{BoxesMeet, boxes};
 use crate::distance::distance;
-use crate::gjk::{BoxesMeet, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, rounding};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk, rounding};
 use crate::observer::Observer;
 use crate::options::{MAX_ITERATIONS, options};
 use crate::shape::Shape;
@@ -180,7 +181,10 @@ compiled_once! {
         let size = pair.size(first.offset);
         let frame = Frame::new(pair, first.offset, size);
         if let Some(point) = first.point
-            && let Some(boxes) = boxes(pair, &frame)
+            && frame.radius <= Scalar::ZERO
+            && cores.iter().all(|core| matches!(core.kind, CoreKind::Polytope))
+            && let Some(parts) = pair.parallelotopes()
+            && let Some(boxes) = boxes(&parts, &frame)
         {
             let (zero, upper) = (Scalar::ZERO, Float::infinity());
             let (v, w) = (first.direction, point + first.offset);

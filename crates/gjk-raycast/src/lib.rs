@@ -132,6 +132,7 @@ struct Readme;
 
 mod axial;
 mod body;
+mod boxes;
 mod cast;
 mod certificate;
 mod contact;

@@ -1,7 +1,6 @@
 //! GJK: the closest points of two bodies' cores, for [`distance`](crate::distance) and
 //! [`intersects`](crate::intersects) (the paper's Algorithm 2).
 
-mod boxes;
 mod next_direction;
 mod state;
 
@@ -12,7 +11,6 @@ use crate::body::{CastBody as _, Pair, PointPair, ScalarFrom, Shapes, TracedSupp
 use crate::observer::Observer;
 use crate::unit::{lost_to_underflow, moderate, power_of_two_near, reciprocal_of_power};
 use crate::{Status, SubAlgorithm};
-pub(crate) use boxes::{BoxesMeet, boxes};
 use next_direction::NextDirection;
 pub(crate) use state::{Gjk, NEAR};
 

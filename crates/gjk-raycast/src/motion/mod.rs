@@ -1,6 +1,6 @@
 //! Motion: the first contact of bodies that turn, and motions of any kind.
 
-mod boxes;
+mod box_look;
 mod chain_motion;
 mod first_contact;
 mod free_interval;

@@ -1,4 +1,4 @@
-//! A body and its motion, and the parts of a box that do not change as it moves.
+//! A body and its motion.
 
 use convex_support::{AngularVelocity, BoundingSphere, Core, CoreKind, Matrix, Parallelotope, Scalar, Spin, Vector};
 use num_traits::Float;
@@ -12,6 +12,9 @@ use crate::unit::length_bound;
 
 /// If the cosine of the angle between two edges is more than this, a parallelotope does not count as a box.
 const SKEW: f64 = 1e-6;
+
+/// The thickness of a rectangle in units of its shorter edge: less than rounding, but enough for its normal to be known.
+const THICKNESS: f64 = 1.0 / (1_u64 << 60) as f64;
 
 /// A body and its motion.
 pub(super) struct MovingBody<'s, V: Vector> {
@@ -157,6 +160,32 @@ impl<'s, V: Vector> MovingBody<'s, V> {
     fn ball(&self) -> BoundingSphere<V> {
         BoundingSphere { center: self.core.origin, radius: self.core.extent }
     }
+
+    /// The core at time 0 relative to its origin, if it is a box without a radius, times a power of two. In space it may
+    /// be a rectangle.
+    pub(super) fn as_box(&self, per_unit: V::Scalar) -> Option<Parallelotope<V>> {
+        let Self { shape, core, .. } = self;
+        if !matches!(core.kind, CoreKind::Polytope) || core.radius > Scalar::ZERO {
+            return None;
+        }
+        let Parallelotope { center, half_edges } = shape.core_parallelotope()?;
+        let mut edges = half_edges.map(|edge| array(edge * per_unit));
+        if V::DIM == 2 {
+            edges[2] = [0.0, 0.0, 1.0];
+        }
+        let length = |edge: Vec3| Float::sqrt(dot(edge, edge));
+        let mut lengths = edges.map(length);
+        if let Some(i) = lengths.iter().position(|&length| !(length * length > LEAST)) {
+            let [j, k] = [(i + 1) % 3, (i + 2) % 3];
+            let part = THICKNESS / lengths[j].max(lengths[k]);
+            edges[i] = cross(&edges[j], &edges[k]).map(|x| x * part);
+            lengths[i] = length(edges[i]);
+        }
+        // If two edges have no length, all products are zero, and the core does not count as a box.
+        let is_orthogonal = |[i, j]: [usize; 2]| dot(edges[i], edges[j]).abs() < SKEW * lengths[i] * lengths[j];
+        let is_box = [[0, 1], [1, 2], [2, 0]].into_iter().all(is_orthogonal);
+        is_box.then(|| Parallelotope { center: center * per_unit, half_edges: edges.map(vector) })
+    }
 }
 
 impl<V: Vector> Rigid<V> {
@@ -194,36 +223,4 @@ impl<V: Vector> Rigid<V> {
 impl<V: Vector> Place<V> {
     /// Where a body starts.
     const START: Self = Self { shift: V::ZERO, swing: V::ZERO, rotation: None, error: V::Scalar::ZERO };
-}
-
-/// A core that is a box, at time 0: its centre relative to the body's origin, unit vectors along its edges, and half
-/// the lengths of the edges.
-#[derive(Clone, Copy)]
-pub(super) struct Block<V> {
-    pub(super) center: V,
-    pub(super) units: [V; 3],
-    pub(super) halves: [f64; 3],
-}
-
-impl<V: Vector> Block<V> {
-    /// The core of a shape, if it is a box without a radius. In space it may be a rectangle.
-    pub(super) fn of(shape: Shape<'_, V>, core: &Core<V>) -> Option<Self> {
-        if !matches!(core.kind, CoreKind::Polytope) || core.radius > Scalar::ZERO {
-            return None;
-        }
-        let Parallelotope { center, half_edges } = shape.core_parallelotope()?;
-        let mut edges = half_edges.map(array);
-        if V::DIM == 2 {
-            edges[2] = [0.0, 0.0, 1.0];
-        }
-        let squared = edges.map(|edge| dot(edge, edge));
-        let halves = squared.map(|squared| if squared > LEAST { Float::sqrt(squared) } else { 0.0 });
-        let mut units: [Vec3; 3] = core::array::from_fn(|i| edges[i].map(|x| x / halves[i]));
-        if let Some(i) = halves.iter().position(|&half| half == 0.0) {
-            units[i] = cross(&units[(i + 1) % 3], &units[(i + 2) % 3]);
-        }
-        // If two edges have no length, this is NaN, and the core does not count as a box.
-        let is_box = (0..3).all(|i| dot(units[i], units[(i + 1) % 3]).abs() < SKEW);
-        is_box.then(|| Self { center, units: units.map(vector), halves })
-    }
 }

@@ -3,12 +3,12 @@
 use core::cell::{Cell, RefCell};
 
 use convex_support::numerics::range::is_comfortable;
-use convex_support::{Core, Hint, Scalar, Vector, compiled_table};
+use convex_support::{Core, Hint, Parallelotope, Scalar, Vector, compiled_table};
 use num_traits::Float;
 
 use super::first_contact::Begin;
 use super::instant::{Approach, Instant, Limits};
-use super::moving_body::{Block, MovingBody};
+use super::moving_body::MovingBody;
 use super::placed::{BodyFrameCorners, Placed};
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::body::{CastBody, Pair, PointPair, Shapes, TracedSupport as _};
@@ -20,7 +20,7 @@ use crate::options::{MayBeLean, Rare};
 use crate::separation::RareInDistances;
 use crate::shape::Shape;
 use crate::signed_distance::rough_signed_distance;
-use crate::unit::{is_moderate, length_bound, lost_to_underflow};
+use crate::unit::{is_moderate, length_bound, lost_to_underflow, power_of_two_near, reciprocal_of_power};
 use crate::{DistanceOptions, LinearCast, LinearCastOptions, Motion, MotionCastOptions, SignedDistanceOptions};
 
 /// Two bodies and their motions.
@@ -33,8 +33,10 @@ pub(super) struct MovingPair<'s, V: Vector> {
     pub(super) b: MovingBody<'s, V>,
     /// Whether the closest points of the cores were known in closed form at the start.
     knows_points: bool,
-    /// Both cores at time 0, if they are boxes.
-    boxes: Option<[Block<V>; 2]>,
+    /// A power of two near the sizes of the cores.
+    pub(super) unit: V::Scalar,
+    /// Both cores at time 0 in this unit, if they are boxes.
+    boxes: Option<[Parallelotope<V>; 2]>,
     /// The edges that span the facet of the last look, if zero's foot was within it.
     pub(super) facet: Cell<Option<[usize; 2]>>,
     /// The corners of the faces that were closest at the last look.
@@ -55,7 +57,8 @@ pub(crate) struct RareInMotionCasts<V: Vector> {
         Motion<V>,
         &LinearCastOptions<V>,
     ) -> LinearCast<V>,
-    by_boxes: fn(&MovingPair<'_, V>, V::Scalar, &[Block<V>; 2], V, Limits<V::Scalar>, bool) -> Option<Instant<V>>,
+    by_boxes:
+        fn(&MovingPair<'_, V>, V::Scalar, &[Parallelotope<V>; 2], V, Limits<V::Scalar>, bool) -> Option<Instant<V>>,
     pub(super) begin_in_contact: Begin<V>,
     keep_in_contact: fn(&MovingPair<'_, V>, &Instant<V>, &Instant<V>, V::Scalar) -> bool,
     have_met: fn(&MovingPair<'_, V>, &Instant<V>, V::Scalar) -> bool,
@@ -94,12 +97,14 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         let offset = a.core.origin - b.core.origin;
         let pair = Pair::new(shapes, [&a.core, &b.core]);
         let knows_points = pair.closest_points(offset, pair.size(offset)).is_some();
-        let blocks = || Some([Block::of(a.shape, &a.core)?, Block::of(b.shape, &b.core)?]);
+        let unit = power_of_two_near(a.core.extent + b.core.extent);
+        let per_unit = reciprocal_of_power(unit);
+        let blocks = || Some([a.as_box(per_unit)?, b.as_box(per_unit)?]);
         let boxes = if knows_points || rare.is_none() { None } else { blocks() };
         let facet = Cell::new(None);
         let (closest, iterations) = (RefCell::new(BodyFrameCorners::none()), Cell::new(0));
         let hints = Cell::new([Hint::new(), Hint::new()]);
-        Self { shapes, rare, hints, a, b, knows_points, boxes, facet, closest, iterations }
+        Self { shapes, rare, hints, a, b, knows_points, unit, boxes, facet, closest, iterations }
     }
 
     /// Adds to the number of support points.

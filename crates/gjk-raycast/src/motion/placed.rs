@@ -46,6 +46,13 @@ impl<'s, V: Vector> Moved<'s, V> {
         self.rotation.map_or(vector, |rotation| rotation * vector)
     }
 
+    #[inline(always)]
+    pub(super) fn turned_box(&self, Parallelotope { center, half_edges }: &Parallelotope<V>) -> Parallelotope<V> {
+        let [x, y, z] = half_edges;
+        let half_edges = [self.turned(*x), self.turned(*y), self.turned(*z)];
+        Parallelotope { center: self.turned(*center), half_edges }
+    }
+
     /// A vector of the turned shape, turned back.
     #[inline(always)]
     pub(super) fn before(&self, vector: V) -> V {
@@ -88,8 +95,7 @@ impl<V: Vector> SupportMap for Moved<'_, V> {
 
     #[inline]
     fn core_parallelotope(&self) -> Option<Parallelotope<V>> {
-        let Parallelotope { center, half_edges } = self.shape.core_parallelotope()?;
-        Some(Parallelotope { center: self.turned(center), half_edges: half_edges.map(|edge| self.turned(edge)) })
+        Some(self.turned_box(&self.shape.core_parallelotope()?))
     }
 
     /// If the shape is turned, the error of each coordinate may be as large as the length of the error.

@@ -8,7 +8,6 @@ mod cores;
 mod depth;
 mod distances;
 mod near;
-mod zonotope;
 
 use convex_support::numerics::bound::least;
 use convex_support::{Core, Scalar, Vector};

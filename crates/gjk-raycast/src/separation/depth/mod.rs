@@ -13,10 +13,10 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::cores::{Cores, Vertex};
-use super::zonotope::{Zonotope, parallelotope};
 use super::{OfOverlap, RareInDistances, Separation, Wanted};
 use crate::Status;
 use crate::body::{Pair, PointPair, TracedSupport as _};
+use crate::boxes::Zonotope;
 use crate::gjk::{End, Frame, Gjk, GjkOptions, gjk};
 use crate::observer::Observer;
 use crate::symmetric::Symmetric;
@@ -212,14 +212,12 @@ impl<V: Vector> Cores<'_, V> {
     /// tell them apart at once.
     #[inline(always)]
     pub(super) fn closed_form(&mut self, axis: Option<V>) -> Option<ClosedForm<V>> {
-        let Pair { shapes, core_a, core_b, .. } = &self.pair;
         let reach = self.pair.extent() * self.frame.per_unit;
         if self.frame.offset.length_squared() > reach * reach {
             // Balls about the cores are apart.
             return None;
         }
-        let [a, b] = shapes.each();
-        let parts = [parallelotope(a, core_a)?, parallelotope(b, core_b)?];
+        let parts = self.pair.parallelotopes()?;
         let Frame { offset, per_unit, .. } = self.frame;
         let zonotope = Zonotope::new(&parts, offset, per_unit);
         if zonotope.is_beyond(axis.unwrap_or(offset)) {
