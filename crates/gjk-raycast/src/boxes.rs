@@ -701,6 +701,15 @@ mod tests {
         assert_eq!(answer(1.0), answer(2.0_f64.powi(500)));
     }
 
+    /// The difference of two needles, given half of their edges.
+    fn needles(e: Vec3, f: Vec3) -> Zonotope {
+        let needle = |edge| Parallelotope {
+            center: DVec3::ZERO,
+            half_edges: [DVec3::from_array(edge), DVec3::ZERO, DVec3::ZERO],
+        };
+        Zonotope::new(&[needle(e), needle(f)], DVec3::ZERO, 1.0)
+    }
+
     /// Edges nearly along one another, of whole coordinates up to 2⁴⁰: all products are exact as integers.
     #[test]
     fn the_product_of_nearly_parallel_edges_has_all_its_digits() {
@@ -710,12 +719,11 @@ mod tests {
             let minor = |i: usize, j: usize| i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i]);
             let known = [minor(1, 2), minor(2, 0), minor(0, 1)].map(|x| x as f64);
             assert_eq!(exact_cross(&e, &f), known);
-            let EdgeSpan::ZonotopeFacet(normal) = span(&e, &f, dot(e, e), dot(f, f)) else {
-                panic!("they span a plane")
-            };
-            assert!((0..3).all(|i| (normal[i] * length(known) - known[i]).abs() <= 4.0 * f64::EPSILON * length(known)));
+            let Ok(Facet { normal, area, .. }) = needles(e, f).facet([0, 3]) else { panic!("they span a plane") };
+            let off = |i: usize| (normal[i] * length(known).copysign(area) - known[i]).abs();
+            assert!((0..3).all(|i| off(i) <= 4.0 * f64::EPSILON * length(known)));
         }
         let edge = [1.0, 2.0, 3.0];
-        assert!(matches!(span(&edge, &edge.map(|x| 4.0 * x), 14.0, 224.0), EdgeSpan::Parallel(0.0)));
+        assert!(matches!(needles(edge, edge.map(|x| 4.0 * x)).facet([0, 3]), Err(0.0)));
     }
 }
