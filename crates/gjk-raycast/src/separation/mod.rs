@@ -2,7 +2,9 @@
 //!
 //! All questions about two bodies at rest take parts of one answer, so that they cannot contradict one another. The
 //! search has three means, in this order, and ends at the first that answers the question: GJK on the cores, a second
-//! measurement near contact, and an expanding polytope. For a depth, the closed form for two boxes comes before them.
+//! measurement [near contact](near), which decides whether bodies overlap, and for a [depth](depth) an expanding
+//! polytope. For a depth, the closed form for two boxes comes before them. A plain distance needs no more than this
+//! file and GJK.
 
 mod cores;
 mod depth;

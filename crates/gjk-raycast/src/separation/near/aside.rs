@@ -39,7 +39,10 @@ impl<V: Vector> Known<V> {
         max_iterations: usize,
     ) -> NearContact<V> {
         let (mut near, frame) = (near, &self.frame);
-        if let Some(plane) = self.higher_plane(pair, &near, state) {
+        // The planes of the faces of a simplex of full dimension have been tested.
+        if state.simplex.points().len() <= V::DIM
+            && let Some(plane) = self.higher_plane(pair, &near, state)
+        {
             return near.with_plane(&plane);
         }
         // A search that stalled is at a distance from zero.
@@ -52,11 +55,12 @@ impl<V: Vector> Known<V> {
                 let seen = self.seen_from(pair, place, state, left.min(MOST));
                 near.iterations += seen.iterations;
                 is_found &= !seen.simplex.points().is_empty();
-                if let Some(plane) = self.higher_plane(pair, &near, &seen) {
-                    return near.with_plane(&plane);
-                }
                 let point = self.nearest_point(&seen);
                 let (outwards, length) = (place - point, (place - point).norm());
+                let is_outside = length > frame.noise;
+                if is_outside && let Some(plane) = self.higher_plane(pair, &near, &seen) {
+                    return near.with_plane(&plane);
+                }
                 // NaN is no corner.
                 *corner = if length <= frame.radius { place } else { point + outwards * (frame.radius / length) };
             }

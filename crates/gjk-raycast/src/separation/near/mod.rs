@@ -131,7 +131,8 @@ pub(crate) fn near_contact<V: Vector>(
     {
         return Some(known);
     }
-    let (near, state) = seen.search(pair, begun, size, max_iterations)?;
+    let mut state = begun.copied().unwrap_or_else(|| begin(pair, frame, size, max_iterations));
+    let near = seen.search(pair, &mut state, max_iterations)?;
     Some(if is_to_decide && !near.is_settled() { seen.decided(pair, near, &state, max_iterations) } else { near })
 }
 
@@ -261,7 +262,6 @@ impl<V: Vector> Known<V> {
     }
 
     /// `n·(a − b + offset)`, rounded once: the products are added up in twice the precision.
-    #[inline(never)]
     fn level(&self, n: V, PointPair { a, b }: PointPair<V>) -> V::Scalar {
         let parts = (0..V::DIM).flat_map(|i| [a, -b, self.frame.offset, self.lost].map(|part| (n.get(i), part.get(i))));
         dot_minus(parts, V::Scalar::ZERO)
@@ -291,55 +291,44 @@ impl<V: Vector> Known<V> {
         found.is_separated().then_some(found)
     }
 
-    /// The result of GJK, as it was begun or from where all queries begin, and its state.
-    fn search(
-        &self,
-        pair: &mut AnyPair<'_, V>,
-        begun: Option<&Gjk<V>>,
-        size: V::Scalar,
-        max_iterations: usize,
-    ) -> Option<(NearContact<V>, Gjk<V>)> {
+    /// The result of GJK, as it was begun or from where all queries begin.
+    fn search(&self, pair: &mut AnyPair<'_, V>, state: &mut Gjk<V>, max_iterations: usize) -> Option<NearContact<V>> {
         let frame = &self.frame;
-        let mut state = match begun {
-            Some(&begun) => begun,
-            None => begin(pair, frame, size, max_iterations),
-        };
         state.ensure_measured();
         if is_around_zero(state.simplex.points(), self.error_of_corners) {
-            return Some((overlapping(&state, frame), state));
+            return Some(overlapping(state, frame));
         }
         let seen = |state: &Gjk<V>, end, found| {
-            let met = (state.simplex.weighted_witness(), state.length);
-            (near_contact_at(frame, found, (end, state.iterations), met), *state)
+            near_contact_at(frame, found, (end, state.iterations), (state.simplex.weighted_witness(), state.length))
         };
-        let before = self.best_plane(pair, &state);
+        let before = self.best_plane(pair, state);
         let is_settled = |(plane, upper): &(SupportPlane<V>, V::Scalar)| {
             plane.meets(*upper, self.frame.radius) && plane.is_beyond(self.frame.radius)
         };
         if before.as_ref().is_some_and(is_settled) {
-            return before.map(|found| seen(&state, End::Separated, found));
+            return before.map(|found| seen(state, End::Separated, found));
         }
         // A simplex of full dimension is never left, nor is zero itself.
         if state.simplex.points().len() > V::DIM || state.length <= Scalar::ZERO {
-            return before.map(|found| seen(&state, End::Overlap, found));
+            return before.map(|found| seen(state, End::Overlap, found));
         }
-        let begun = state;
-        let end = go_on(&mut state, pair, frame, max_iterations);
+        let begun = *state;
+        let end = go_on(state, pair, frame, max_iterations);
         if is_around_zero(state.simplex.points(), self.error_of_corners) {
-            return Some((overlapping(&state, frame), state));
+            return Some(overlapping(state, frame));
         }
-        let mut best = self.best_plane(pair, &state);
+        let mut best = self.best_plane(pair, state);
         // Within rounding a search may go astray, and end around zero, or where no plane is as far as its points.
         let is_doubtful = |(best, _): &(SupportPlane<V>, _)| !best.is_beyond(frame.radius);
         if best.as_ref().is_none_or(is_doubtful) {
             let certain = |(best, _): &(SupportPlane<V>, _)| best.certain();
             if before.as_ref().map(certain) > best.as_ref().map(certain) {
                 let (iterations, nearest) = (state.iterations, best.map_or(Float::infinity(), |(_, upper)| upper));
-                (state, best) = (begun, before.map(|(plane, upper)| (plane, upper.min(nearest))));
+                (*state, best) = (begun, before.map(|(plane, upper)| (plane, upper.min(nearest))));
                 state.iterations = iterations;
             }
         }
-        best.map(|found| seen(&state, end, found))
+        best.map(|found| seen(state, end, found))
     }
 
     /// The plane that is certainly farthest from zero, of those across the faces that a search has ended at, and across
@@ -390,7 +379,6 @@ impl<V: Vector> Known<V> {
     }
 
     /// The plane across `n` that supports the difference.
-    #[inline(never)]
     fn plane(&self, pair: &mut AnyPair<'_, V>, n: V) -> Option<SupportPlane<V>> {
         let n = n.unit()?;
         let mut level = self.level(n, pair.support(-n).1);
