@@ -114,10 +114,10 @@ impl Zonotope {
         Float::sqrt(self.squared[k])
     }
 
-    /// The facet of two edges; or if they are parallel, by how much one of them would have to be changed to be a
-    /// multiple of the other.
+    /// The unit vector along the cross product of two edges, and their area; or if they are parallel, by how much one of
+    /// them would have to be changed to be a multiple of the other.
     #[inline(always)]
-    pub(crate) fn facet(&self, [i, j]: [usize; 2]) -> Result<Facet, f64> {
+    fn across(&self, [i, j]: [usize; 2]) -> Result<(Vec3, f64), f64> {
         let (e, f, le, lf) = (self.edge(i), self.edge(j), self.squared[i], self.squared[j]);
         let product = le * lf;
         if product < LEAST {
@@ -135,13 +135,25 @@ impl Zonotope {
         }
         let area = Float::sqrt(area);
         let per = area.recip();
-        let unit = across.map(|x| x * per);
-        let along = dot(unit, self.center);
-        let (normal, area) = if along > 0.0 { (unit, area) } else { (unit.map(|x| -x), -area) };
+        Ok((across.map(|x| x * per), area))
+    }
+
+    /// How far each edge leads along a unit vector, and the level of the facets that two edges span across it.
+    #[inline(always)]
+    fn level(&self, n: Vec3, [i, j]: [usize; 2]) -> ([f64; EDGES], f64) {
         let ([x, y, z], others) = (&self.edges, &OTHERS[i][j]);
-        let heights = core::array::from_fn(|k| normal[0] * x[k] + normal[1] * y[k] + normal[2] * z[k]);
+        let heights = core::array::from_fn(|k| n[0] * x[k] + n[1] * y[k] + n[2] * z[k]);
         let [a, b, c, d, e, f]: [f64; EDGES] = core::array::from_fn(|k| Float::abs(heights[k]) * others[k]);
-        Ok(Facet { span: [i, j], normal, area, heights, level: along.abs() - ((a + c + e) + (b + d + f)) })
+        (heights, dot(n, self.center).abs() - ((a + c + e) + (b + d + f)))
+    }
+
+    /// The facet of two edges, unless they are parallel.
+    #[inline(always)]
+    pub(crate) fn facet(&self, span: [usize; 2]) -> Option<Facet> {
+        let (n, area) = self.across(span).ok()?;
+        let (normal, area) = if dot(n, self.center) > 0.0 { (n, area) } else { (n.map(|x| -x), -area) };
+        let (heights, level) = self.level(normal, span);
+        Some(Facet { span, normal, area, heights, level })
     }
 
     /// The place of zero's foot on a facet along each edge, if every edge but the two that span the facet leads to it
@@ -281,7 +293,7 @@ impl Zonotope {
             false
         });
         // If a number is NaN, the comparison fails.
-        if overlooked <= highest.abs() * (OVERLOOKED * OVERLOOKED) { self.facet(span).ok() } else { None }
+        if overlooked <= highest.abs() * (OVERLOOKED * OVERLOOKED) { self.facet(span) } else { None }
     }
 }
 
@@ -414,10 +426,10 @@ impl Zonotope {
         let mut levels = [f64::NEG_INFINITY; SPANS.len()];
         let (mut highest, mut parallel) = (f64::NEG_INFINITY, 0.0);
         for (level, &span) in levels.iter_mut().zip(spans::<V>()) {
-            match self.facet(span) {
+            match self.across(span) {
                 Err(change) => parallel += 2.0 * change,
-                Ok(facet) => {
-                    *level = facet.level;
+                Ok((n, _)) => {
+                    (_, *level) = self.level(n, span);
                     // NaN ends here too.
                     if !(*level < -tie) {
                         return None;
@@ -428,7 +440,7 @@ impl Zonotope {
         }
         let near = || {
             let near = levels.iter().zip(spans::<V>()).filter(|(level, _)| **level >= highest - tie);
-            near.filter_map(|(_, &span)| self.facet(span).ok())
+            near.filter_map(|(_, &span)| self.facet(span))
         };
         let nearest = near().find(|facet| facet.level >= highest)?;
         let inner =

@@ -77,7 +77,7 @@ impl<V: Vector> MovingPair<'_, V> {
         let boxes = Zonotope::new(&parts, placed.offset * per_unit, Scalar::ONE);
         // A facet counts as one support point, since it takes the place of one, and the search among all facets as
         // another.
-        let there = match self.facet.get().and_then(|span| Some(BoxFacet::new(&boxes, boxes.facet(span).ok()?))) {
+        let there = match self.facet.get().and_then(|span| Some(BoxFacet::new(&boxes, boxes.facet(span)?))) {
             Some(kept) if kept.room > 0.0 && kept.facet.level > -kept.room * DEEP => kept,
             _ => {
                 self.count(1);
