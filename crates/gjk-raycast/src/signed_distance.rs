@@ -87,7 +87,8 @@ compiled_once! {
         observer: &mut Observer<'_, V>,
     ) -> SignedDistance<V> {
         let axis = options.axis.map(|axis| if is_swapped { -axis } else { axis });
-        let wanted = Wanted::new(OfOverlap::Depth, SignedDistanceOptions { axis, ..options }, Deeper::named().part(|deeper| &deeper.0));
+        let deeper = Deeper::named().part(|deeper| &deeper.0);
+        let wanted = Wanted::new(OfOverlap::Depth, SignedDistanceOptions { axis, ..options }, deeper);
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation::<_, true>(&mut cores, &wanted, observer));
         let mut answer = found.signed_distance(&cores, &wanted);
