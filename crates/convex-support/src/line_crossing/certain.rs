@@ -522,7 +522,9 @@ impl<V: Vector3> NearLine<V> {
             let (out, room) = slant(outer, error);
             (room < V::Scalar::ZERO) | (out.length_squared() >= room * room) | (outer.get(1) <= -error - h)
         };
-        ((slack >= V::Scalar::ZERO) & (slack <= self.longest_slack()) & is_in & is_out)
+        // At the rim, the side may be one that the line leaves.
+        let is_entered = normal.dot(direction) < V::Scalar::ZERO;
+        ((slack >= V::Scalar::ZERO) & (slack <= self.longest_slack()) & is_in & is_out & is_entered)
             .then(|| self.enters([entry - slack, entry, entry + slack], normal))
     }
 

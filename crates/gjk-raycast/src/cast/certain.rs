@@ -46,24 +46,13 @@ pub(crate) fn certain<V: Vector>(
             if (earliest > zero) & (latest <= last_number(options.max_lambda)) {
                 (Outcome::Hit(RayHit { lambda: entry, point: ray.at(entry), normal: Some(normal) }), bounds)
             } else if (earliest > options.max_lambda) & (latest < infinity) {
-                return ends_before(normal, ray);
+                missed(normal)
             } else {
                 return None;
             }
         }
     };
     Some(RayCast { outcome, lower, upper, status: Status::Converged, iterations: 1 })
-}
-
-/// The miss of a ray that ends before the plane across the `normal` at its entry. At a rim the normal may be that of a
-/// side that the ray does not cross, and then tells nothing. Not compiled into its caller: rays at boxes took 15 % more
-/// instructions.
-#[inline(never)]
-fn ends_before<V: Vector>(normal: V, ray: Ray<V>) -> Option<RayCast<V>> {
-    (normal.dot(ray.direction) < Scalar::ZERO).then(|| {
-        let outcome = Outcome::Miss(Miss { axis: normal });
-        RayCast::without_upper(outcome, V::Scalar::infinity(), Status::Converged, 1)
-    })
 }
 
 /// The end of a ray, or the largest number if it has none; NaN stays NaN.

@@ -22,7 +22,7 @@ use crate::symmetric::axes_across;
 /// errors of room; one that is larger is cut more by the edges of the bodies.
 const ASIDE: f64 = 16.0;
 
-/// The noise of GJK from there, in that of the query: of bodies that are thinner than the noise, it is to find the face.
+/// The noise of GJK from there, in that of the query: it is to find the faces of bodies thinner than the noise.
 const NOISE: f64 = 1.0 / 256.0;
 
 /// The most support points of one look. None of them has to end: any point of the difference will do as a corner, and
@@ -31,6 +31,8 @@ const MOST: usize = 16;
 
 impl<V: Vector> Known<V> {
     /// The same measurement, decided from places aside of zero if that can be; given the search that it ended with.
+    #[cold]
+    #[inline(never)]
     pub(super) fn decided(
         &self,
         pair: &mut AnyPair<'_, V>,

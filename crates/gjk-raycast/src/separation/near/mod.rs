@@ -396,7 +396,7 @@ impl<V: Vector> Known<V> {
 
     /// The point that a search has ended at, `Σ wᵢ·(aᵢ − bᵢ + offset) / Σ wᵢ`: whatever the weights, that is a point of
     /// the difference. Its coordinates are added up in twice the precision.
-    #[inline(never)]
+    #[inline]
     fn nearest_point(&self, state: &Gjk<V>) -> V {
         let sums = V::from_fn(|i| {
             let parts = state.simplex.weighted().flat_map(|(weight, PointPair { a, b })| {
