@@ -142,8 +142,12 @@ impl Cell {
                 serde_json::from_slice::<Value>(&answered).map(|line| line["answer"].clone()).unwrap_or_default();
             // A bound that is left out, as of a graze, is infinite.
             let bound = |name: &str| answer[name].as_f64().unwrap_or(f64::INFINITY);
-            let is_narrow = query.ends_with("cast") || bound("upper") - bound("lower") <= NARROW;
-            cell.certain += u64::from(answer["status"] == "converged" && is_narrow);
+            let is_certain = if query.ends_with("cast") {
+                answer["certain"] == true
+            } else {
+                answer["status"] == "converged" && bound("upper") - bound("lower") <= NARROW
+            };
+            cell.certain += u64::from(is_certain);
             cell.steps = cell.steps.max(answer["iterations"].as_u64().unwrap_or(0));
             let (proof, said) = judge_line(&answered, &meshes);
             if proof == Proof::Disproved {

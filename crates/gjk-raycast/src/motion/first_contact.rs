@@ -432,11 +432,16 @@ impl<'p, V: Vector> Search<'p, V> {
     /// may leave open: by their speed, or else by the plane of the last time at which they are apart.
     fn is_narrow(&self) -> bool {
         let (number, Instant { time, normal, gap, error, closing, .. }) = (V::Scalar::from_f64, self.near);
-        let (zero, width, size) = (V::Scalar::ZERO, self.upper - time, self.bodies.size());
-        let narrow = (size * V::Scalar::EPSILON * number(NARROW)).max(error * number(NARROW_OF_ERROR))
-            + size * self.options.tolerance;
+        let (zero, from, size) = (V::Scalar::ZERO, self.lower().min(time), self.bodies.size());
+        let width = self.upper - from;
         if width <= zero {
             return true;
+        }
+        let narrow = (size * V::Scalar::EPSILON * number(NARROW)).max(error * number(NARROW_OF_ERROR))
+            + size * self.options.tolerance;
+        if from < time {
+            // The last plane is of a later time than the first one of the bracket.
+            return width * self.bodies.speed_at(&self.near) <= narrow;
         }
         let most = self.bodies.acceleration_along(TurningPlane { from: normal, to: normal }, [time, self.upper]);
         if width * (closing + most * width * number(0.5)) - gap.min(zero) <= narrow {
