@@ -100,7 +100,7 @@ impl Laws<'_> {
     fn distance<V: Vector>(&mut self, how: &'static str, answer: &Distance<V>, tolerance: f64) {
         let [lower, upper, value] = [answer.lower, answer.upper, answer.distance].map(Scalar::as_f64);
         let is_converged = answer.status == Status::Converged;
-        let allowed = (tolerance * upper).max(WIDTH * self.scale.of_bounds());
+        let allowed = tolerance * upper + WIDTH * self.scale.of_bounds();
         self.report.width("distance", is_converged, [lower, upper, allowed], || format!("{how}: {answer:?}"));
         self.report.claim((Law::Bound, "distance"), lower <= value && value <= upper, || {
             format!("{how}, the distance is not within its own bounds: {answer:?}")

@@ -444,12 +444,12 @@ impl<'p, V: Vector> Search<'p, V> {
             return width * self.bodies.speed_at(&self.near) <= narrow;
         }
         let most = self.bodies.acceleration_along(TurningPlane { from: normal, to: normal }, [time, self.upper]);
-        if width * (closing + most * width * number(0.5)) - gap.min(zero) <= narrow {
+        if width * (closing.abs() + most * width * number(0.5)) - gap.min(zero) <= narrow {
             return true;
         }
         let before = if self.base.stage == Stage::Apart { zero } else { self.bodies.level(time, normal).0 };
         // NaN is not narrow.
-        before - self.bodies.level(self.upper, normal).0 <= narrow
+        (before - self.bodies.level(self.upper, normal).0).abs() <= narrow
     }
 
     fn answer(&self, end: MotionEnd<V>) -> MotionCast<V> {
