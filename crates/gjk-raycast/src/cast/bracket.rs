@@ -96,9 +96,6 @@ pub(super) struct Bracket<'a, V: Vector> {
     low: PlaneCrossing<V::Scalar>,
     /// The unit normal of that plane; `None` as long as no plane was crossed.
     normal: Option<V>,
-    /// The greatest place of a crossing less its error: the ray is not in the body before it. A steep plane that is
-    /// crossed earlier than the last one has a smaller error.
-    certain_low: V::Scalar,
     /// Where the ray is in the body, at the latest.
     high: Bound<V::Scalar>,
     entry: EntryProof,
@@ -166,7 +163,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
             chord: (squared, half_chord),
             low: PlaneCrossing { bound: Bound::exact(ray.start.max(-half_chord)), slope: zero },
             normal: None,
-            certain_low: -V::Scalar::infinity(),
             high: Bound::exact(V::Scalar::infinity()),
             entry: EntryProof::BySlope,
             depth: V::Scalar::infinity(),
@@ -354,20 +350,12 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// ends the search.
     #[inline(never)]
     pub(super) fn advance(&mut self, n: V, point: V) -> Result<(), Stop<V>> {
-        if let Some(crossing) = self.crossing(n, point)? {
-            let Bound { at, spread, .. } = crossing.bound;
-            self.exclude_until(at - self.error * spread);
-            if at - self.noise * spread >= self.earliest() {
-                (self.low, self.normal) = (crossing, Some(n));
-            }
+        if let Some(crossing) = self.crossing(n, point)?
+            && crossing.bound.at - self.noise * crossing.bound.spread >= self.earliest()
+        {
+            (self.low, self.normal) = (crossing, Some(n));
         }
         Ok(())
-    }
-
-    /// Records that the ray is certainly not in the body before a place.
-    #[inline(always)]
-    pub(super) fn exclude_until(&mut self, certain: V::Scalar) {
-        self.certain_low = if certain > self.certain_low { certain } else { self.certain_low };
     }
 
     /// The search ends if the plane across `n` that supports the core at `point` has the rest of the ray before it;
@@ -544,10 +532,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
     pub(super) fn bounds(&self, contact: Option<V::Scalar>) -> (V::Scalar, V::Scalar) {
         let widened = |bound: Bound<_>| self.ray.error(bound.at, self.certain(bound));
         // A λ that overflows, or is NaN, bounds nothing.
-        let mut lower = self.ray.lambda(self.low()) - widened(self.low.bound);
-        if self.certain_low > self.low() - self.certain(self.low.bound) {
-            lower = lower.max(self.ray.lambda(self.certain_low) - self.ray.error(self.certain_low, Scalar::ZERO));
-        }
+        let lower = self.ray.lambda(self.low()) - widened(self.low.bound);
         let lower = if lower < V::Scalar::infinity() { lower.max(Scalar::ZERO) } else { Scalar::ZERO };
         let upper = self.ray.lambda(self.high.at) + self.ray.error(self.high.at, self.delay());
         match contact {

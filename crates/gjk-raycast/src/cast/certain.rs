@@ -166,13 +166,10 @@ pub(super) fn at_certain_entry<V: Vector>(bracket: &mut Bracket<'_, V>) -> Resul
     let n = axis.unit().ok_or(Stop::InDoubt)?;
     let (point, _) = bracket.support(n, n, &[])?;
     bracket.advance(n, point)?;
-    let CertainCrossing::Enters { entry, bounds: [earliest, latest], normal } = known else {
-        return Err(Stop::InDoubt);
-    };
+    let CertainCrossing::Enters { entry, bounds: [_, latest], normal } = known else { return Err(Stop::InDoubt) };
     let point = line.at(entry) - normal * bracket.radius;
     let witness = bracket.body.witness(point);
     let found = bracket.close(bracket.radius, point, witness, entry)?;
-    bracket.exclude_until(earliest);
     bracket.enter_for_certain(latest);
     Ok(found)
 }
