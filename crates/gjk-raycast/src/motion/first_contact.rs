@@ -428,8 +428,8 @@ impl<'p, V: Vector> Search<'p, V> {
         });
     }
 
-    /// Whether the bodies are no deeper at the upper bound, or have sunk no more until then, than a converged answer
-    /// may leave open: by their speed, or else by the plane of the last time at which they are apart.
+    /// Whether the bodies move against one another, within the bracket, by no more than a converged answer may leave
+    /// open: by their speed, or else by the plane of the last time at which they are apart.
     fn is_narrow(&self) -> bool {
         let (number, Instant { time, normal, gap, error, closing, .. }) = (V::Scalar::from_f64, self.near);
         let (zero, from, size) = (V::Scalar::ZERO, self.lower().min(time), self.bodies.size());
