@@ -30,10 +30,10 @@ use crate::gjk::Frame;
 pub(crate) const EDGES: usize = 6;
 
 /// Below this squared sine of the angle between two edges their product is computed in twice the precision.
-const ACUTE: f64 = 0.25;
+const ACUTE_EDGES: f64 = 0.25;
 
 /// Edges with a sine of the angle below this many ε count as parallel.
-const PARALLEL: f64 = 8.0;
+const PARALLEL_EDGES: f64 = 8.0;
 
 /// The two edges of each facet.
 const SPANS: [[usize; 2]; EDGES * (EDGES - 1) / 2] = {
@@ -125,10 +125,10 @@ impl Zonotope {
         }
         let mut across = cross(&e, &f);
         let mut area = dot(across, across);
-        if area < ACUTE * product {
+        if area < ACUTE_EDGES * product {
             across = exact_cross(&e, &f);
             area = dot(across, across);
-            let parallel = PARALLEL * f64::EPSILON;
+            let parallel = PARALLEL_EDGES * f64::EPSILON;
             if area <= parallel * parallel * product {
                 return Err(Float::sqrt(area / le.max(lf)));
             }
@@ -299,11 +299,11 @@ impl Zonotope {
 
 /// The rounding of [`boxes`], in ε of the bound on all lengths: coordinates `4ε` each, products of two `12ε`, sums of
 /// seven `6ε`, for both sides.
-const ROUNDING: f64 = 64.0;
+const ROUNDING_OF_OVERLAP: f64 = 64.0;
 
 /// The rounding per part by which two edges of the first box are not orthogonal: a coordinate loses `2`, a product of
 /// edges `12`.
-const SKEW: f64 = 16.0;
+const SKEW_OF_EDGES: f64 = 16.0;
 
 /// Edges that are less orthogonal are not those of a box.
 const LARGEST_SKEW: f64 = 1.0 / 1024.0;
@@ -340,7 +340,7 @@ pub(crate) fn boxes<V: Vector>(parts: &[Parallelotope<V>; 2], frame: &Frame<V>) 
         return None;
     }
     let skew = skew_x.max(skew_y).max(skew_z);
-    let error = frame.error.as_f64() + (ROUNDING * f64::EPSILON + SKEW * skew) * LENGTHS;
+    let error = frame.error.as_f64() + (ROUNDING_OF_OVERLAP * f64::EPSILON + SKEW_OF_EDGES * skew) * LENGTHS;
     let lengths = [1.0, 1.0, 1.0, zonotope.length(3), zonotope.length(4), zonotope.length(5)];
     // Nearly along a direction of the first box, or without length.
     let off: [Option<f64>; 3] = core::array::from_fn(|k| {
@@ -376,20 +376,20 @@ impl SeparatingAxes {
 
 /// How much a unit normal may be turned by rounding, in ε: the product of two edges is wrong by one of the product of
 /// their lengths, which is at most twice as long; the rest are its own roundings.
-const TURN: f64 = 4.0;
+const NORMAL_TURNED: f64 = 4.0;
 
 /// How much longer or shorter than one it may be, in ε.
 const STRETCH: f64 = 3.0;
 
 /// The rounding of a sum of five products of three terms each, with the centre in the last of them, in ε of the sum
 /// of their magnitudes.
-const SUM: f64 = 4.5;
+const SUM_OF_PRODUCTS: f64 = 4.5;
 
 /// Facets that are by this many ε of the size farther than the nearest may be the nearest: more than all of the above.
 const TIE: f64 = 32.0;
 
 /// Edges that leave a plane by fewer ε of the size lie in it.
-const IN_PLANE: f64 = 16.0;
+const EDGE_IN_PLANE: f64 = 16.0;
 
 /// How far outside of its facet a projection may seem to be by rounding, as a part of the edges.
 const OUTSIDE: f64 = 1e-12;
@@ -422,7 +422,7 @@ impl Zonotope {
     pub(crate) fn nearest_facet<V: Vector>(&self) -> Option<NearestFacet> {
         let lengths = (0..EDGES).filter(|&k| V::DIM == 3 || k != 2).map(|k| self.length(k));
         let size = lengths.fold(length(self.center), |size, length| size + length);
-        let (tie, flat) = (TIE * f64::EPSILON * size, IN_PLANE * f64::EPSILON * size);
+        let (tie, flat) = (TIE * f64::EPSILON * size, EDGE_IN_PLANE * f64::EPSILON * size);
         let mut levels = [f64::NEG_INFINITY; SPANS.len()];
         let (mut highest, mut parallel) = (f64::NEG_INFINITY, 0.0);
         for (level, &span) in levels.iter_mut().zip(spans::<V>()) {
@@ -480,7 +480,7 @@ impl Zonotope {
         }
         let along = dot(n, middle);
         let across = length(core::array::from_fn(|i| middle[i] - n[i] * along));
-        f64::EPSILON * (SUM * total + STRETCH * facet.level.abs() + TURN * across)
+        f64::EPSILON * (SUM_OF_PRODUCTS * total + STRETCH * facet.level.abs() + NORMAL_TURNED * across)
     }
 
     /// The place of zero's foot along each edge, on a facet in whose plane others than the two edges that span it may

@@ -27,6 +27,12 @@ use convex_support::Scalar;
 
 use crate::symmetric::{Across, Symmetric, dot, turned_left};
 
+/// Two support points are of one smooth piece if the curvature at one predicts the way to the other but for this part.
+pub(crate) const SAME_PIECE: f64 = 0.25;
+
+/// The largest tangent of an angle by which a prediction turns a normal.
+pub(crate) const LARGEST_TURN: f64 = 0.5;
+
 /// The weight `β` of the second of two points `P` and `P + e` in the point between them that is closest to zero.
 pub(crate) fn share_of_second<S: Scalar>(p: Across<S>, e: Across<S>) -> S {
     (-dot(e, p) / dot(e, e)).max(S::ZERO).min(S::ONE)

@@ -94,7 +94,7 @@ impl<V: VectorData> Serialize for Contact<V> {
 impl<'de, V: VectorData> Deserialize<'de> for Contact<V> {
     fn deserialize<D: Deserializer<'de>>(data: D) -> Result<Self, D::Error> {
         let read: Manifold<V, SignedDistance<V>, Vec<ContactPoint<V>>> = Manifold::deserialize(data)?;
-        if !(1..=Self::MAX_POINTS).contains(&read.points.len()) {
+        if !(1..=Self::MANIFOLD_POINTS).contains(&read.points.len()) {
             return Err(D::Error::invalid_length(read.points.len(), &"one to four points"));
         }
         Ok(Self::new(read.normal, read.distance, read.points))

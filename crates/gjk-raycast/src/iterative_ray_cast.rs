@@ -8,7 +8,7 @@ use crate::unit::power_of_two_near;
 use crate::{Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
 
 /// How many places are tested for the ray to be certainly in the set, each four times as far behind the last plane.
-const LOOKS: usize = 8;
+const PLACES_BEHIND: usize = 8;
 
 /// The first point of a ray in a convex set that is given by its closest points: `closest_point(x)` is the point of
 /// the set closest to `x`, or `x` itself within the set, or `None` if it is not known.
@@ -235,7 +235,7 @@ impl<'o, V: Vector> Travelled<'o, V> {
         // At once for a ray that begins in the set; from a plane on, where it is as far behind that as the points are
         // around it.
         let mut step = if self.normal.is_some() { noise * number(8.0) / slope } else { V::Scalar::ZERO };
-        for _ in 0..LOOKS {
+        for _ in 0..PLACES_BEHIND {
             let mu = self.crossing + step;
             let x = if mu <= self.local.start { self.ray.source } else { self.at(mu) };
             noise = noise.max(self.noise(x, x));

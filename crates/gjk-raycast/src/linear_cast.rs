@@ -18,7 +18,7 @@ use crate::{
 
 /// Shapes may be in contact if they are apart by so many ε of their sizes and of their distance from the origin, and so
 /// many times the errors that they state of their support points: they and their places are rounded.
-const NEAR: f64 = 16.0;
+const MAY_TOUCH: f64 = 16.0;
 const NEAR_OF_FAR: f64 = 4.0;
 const NEAR_OF_STATED: f64 = 4.0;
 
@@ -313,7 +313,7 @@ fn answer<V: Vector>(
         // By powers of two that are less than 1, so that nothing overflows.
         let units = |number: f64| V::Scalar::EPSILON * Scalar::from_f64(number);
         let stated = (core_a.error + core_b.error) * Scalar::from_f64(NEAR_OF_STATED);
-        start.slack = sizes * units(NEAR) + far * units(NEAR_OF_FAR) + stated;
+        start.slack = sizes * units(MAY_TOUCH) + far * units(NEAR_OF_FAR) + stated;
         only_if_deeper(&mut answer, &start, options);
     }
     answer.status = answer.status.of(&answer.outcome, answer.is_certain());

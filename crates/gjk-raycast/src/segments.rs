@@ -71,7 +71,7 @@ fn normal_in_order<V: Vector>([u, w]: [V; 2], middles: [V; 2], [a, b]: [V; 2], v
     let (uv, wv) = (if is_within_u { u.dot(v) } else { zero }, if is_within_w { w.dot(v) } else { zero });
     // Parallel segments are both across any vector that one of them is across.
     let squared_sine = uu * ww - uw * uw;
-    let is_across_both = is_within_u && is_within_w && squared_sine > uu * ww * V::Scalar::from_f64(PARALLEL);
+    let is_across_both = is_within_u && is_within_w && squared_sine > uu * ww * V::Scalar::from_f64(NEARLY_PARALLEL);
     let (s, t) = if is_across_both {
         ((uw * wv - ww * uv) / squared_sine, (uu * wv - uw * uv) / squared_sine)
     } else if is_within_u {
@@ -97,7 +97,7 @@ fn is_within<V: Vector>(half: V, middle: V, point: V) -> bool {
 }
 
 /// The squared sine of the angle between segments below which they count as parallel.
-const PARALLEL: f64 = 1e-6;
+const NEARLY_PARALLEL: f64 = 1e-6;
 
 /// The nearest number from −1 to 1; one of them for NaN.
 #[inline(always)]

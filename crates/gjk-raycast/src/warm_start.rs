@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 
 /// How far a normal may turn from one frame to the next if nothing is known about it, in radians.
-const TURN: f64 = 0.015;
+const USUAL_TURN: f64 = 0.015;
 
 /// A prediction of the normal for the next frame's cast, made from the answer of this frame.
 ///
@@ -88,7 +88,7 @@ impl<V: Vector> WarmStart<V> {
 
     /// How far the normal may be from the axis, as an angle.
     pub(crate) fn error(&self) -> V::Scalar {
-        if self.known >= Learned::Turn { self.error } else { V::Scalar::from_f64(TURN) }
+        if self.known >= Learned::Turn { self.error } else { V::Scalar::from_f64(USUAL_TURN) }
     }
 
     pub(crate) fn reversed(self) -> Self {

@@ -12,7 +12,7 @@ use crate::glam::{Vec3A, Vec4, Vec4Swizzles as _};
 use crate::{Aabb, Scalar as _, Vector};
 
 /// Two nodes leave at most 16 pairs of children, and a node and an item 4, one of which is searched next.
-const STACK: usize = (WIDTH * WIDTH + WIDTH) * MAX_DEPTH;
+const PAIR_STACK: usize = (WIDTH * WIDTH + WIDTH) * MAX_DEPTH;
 
 /// The pairs of items whose boxes are within a distance; found by [`visit`](Self::visit), in [pieces](Self::split) if
 /// need be.
@@ -30,7 +30,7 @@ pub struct PairSearch<'t, V: Vector> {
 
 /// How many pairs of items are found before their own boxes are tested: one after the other and without a branch, so
 /// that boxes outside the caches are fetched together.
-const BATCH: usize = 4 * WIDTH * WIDTH;
+const PAIR_BATCH: usize = 4 * WIDTH * WIDTH;
 
 /// A child of the first tree and one of the second.
 type Pair = (Link, Link);
@@ -72,7 +72,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
     pub fn visit(self, mut visit: impl FnMut(usize, usize) -> ControlFlow<()>) -> usize {
         let mut looked = 0;
         let Some(distance) = finite(self.distance) else { return looked };
-        let (mut stack, mut found) = ([self.start; STACK], [self.start; BATCH]);
+        let (mut stack, mut found) = ([self.start; PAIR_STACK], [self.start; PAIR_BATCH]);
         let (mut top, mut count) = if are_items(self.start) { (0, 1) } else { (1, 0) };
         while top > 0 {
             top -= 1;
@@ -84,7 +84,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
                     (stack[top], top) = (pair, top + 1);
                 }
             });
-            if count > BATCH - WIDTH * WIDTH {
+            if count > PAIR_BATCH - WIDTH * WIDTH {
                 if self.show(&found[..count], distance, &mut visit).is_break() {
                     return looked;
                 }
@@ -104,7 +104,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
         distance: V::Scalar,
         visit: &mut impl FnMut(usize, usize) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let mut are_near = [false; BATCH];
+        let mut are_near = [false; PAIR_BATCH];
         for (is_near, (a, b)) in are_near.iter_mut().zip(pairs) {
             let bound = BoxDistance::new(self.a.boxes[a.index()]).bound(&self.b.boxes[b.index()]);
             *is_near = bound <= distance;

@@ -9,7 +9,7 @@
 use super::twofold::{two_product, two_sum};
 
 /// Half the distance from 1 to the next number.
-const ROUNDING: f64 = f64::EPSILON / 2.0;
+const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
 /// Twice the area of a triangle, positive if its corners are counterclockwise.
 #[inline]
@@ -18,7 +18,7 @@ pub fn twice_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
     let (u, v) = ([a[0] - c[0], a[1] - c[1]], [b[0] - c[0], b[1] - c[1]]);
     let (left, right) = (u[0] * v[1], u[1] * v[0]);
     let determinant = left - right;
-    let lost = (left.abs() + right.abs()) * ((3.0 + 16.0 * ROUNDING) * ROUNDING);
+    let lost = (left.abs() + right.abs()) * ((3.0 + 16.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF);
     if determinant.abs() > lost { determinant } else { exact_twice_area(a, b, c) }
 }
 
@@ -36,7 +36,7 @@ pub fn six_volumes([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
     let size = ux.abs() * (vy_wz.abs() + vz_wy.abs())
         + uy.abs() * (vz_wx.abs() + vx_wz.abs())
         + uz.abs() * (vx_wy.abs() + vy_wx.abs());
-    let lost = size * ((7.0 + 56.0 * ROUNDING) * ROUNDING);
+    let lost = size * ((7.0 + 56.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF);
     if determinant.abs() > lost { determinant } else { exact_six_volumes([a, b, c], d) }
 }
 
@@ -86,7 +86,7 @@ fn exact_six_volumes([a, b, c]: [[f64; 3]; 3], d: [f64; 3]) -> f64 {
         }
     }
     let determinant = high + low;
-    if determinant.abs() >= size_of_low * (128.0 * ROUNDING) {
+    if determinant.abs() >= size_of_low * (128.0 * UNIT_ROUNDOFF) {
         return determinant;
     }
     let mut sum = ExactSum::new();

@@ -35,7 +35,7 @@ const NARROW_OF_WAY: f64 = 512.0;
 
 /// The least depth, in errors, of a ray in a ball that rolls within the body, for its slope to prove where it is in
 /// the body.
-pub(super) const DEEP: f64 = 64.0;
+pub(super) const DEEP_ENOUGH: f64 = 64.0;
 
 /// A support point of the core, with those of both shapes.
 pub(super) type SupportPoint<V> = (V, PointPair<V>);
@@ -219,7 +219,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
     fn enters_ball(&self) -> bool {
         let Bound { spread, more, .. } = self.high;
         let radius = self.rolling_radius;
-        spread == Scalar::ZERO || radius > (self.error + more) * spread * spread * V::Scalar::from_f64(DEEP)
+        spread == Scalar::ZERO || radius > (self.error + more) * spread * spread * V::Scalar::from_f64(DEEP_ENOUGH)
     }
 
     /// Records that an edge, or a graze, may be within an error of where the ray enters.

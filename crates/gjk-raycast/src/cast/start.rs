@@ -191,7 +191,7 @@ impl<S: Scalar> LatestEntry<S> {
 }
 
 /// How many support points a depth takes after its last look at how many it has taken.
-const MORE: usize = 8;
+const MORE_POINTS: usize = 8;
 
 /// The support points left for further measurements.
 struct Looks {
@@ -202,24 +202,24 @@ struct Looks {
 impl Looks {
     /// The number left for a depth, which may take a few more than its limit; `None` if there are none.
     fn left(&self) -> Option<usize> {
-        self.max_iterations.checked_sub(self.iterations + MORE).filter(|&left| left > 0)
+        self.max_iterations.checked_sub(self.iterations + MORE_POINTS).filter(|&left| left > 0)
     }
 }
 
 /// The most places of a ray that are tested, each at most half as far from the source as the one before.
-const LOOKS: usize = 12;
+const MAX_PLACES: usize = 12;
 
 /// The most places in a row that may give no result. If a convex function is zero to an error at the source and at
 /// two more places, the middle one halfway, it is no less than three errors below zero in between.
-const PATIENCE: usize = 2;
+const IDLE_PLACES: usize = 2;
 
 /// The least depth of the ray at a place, as a part of the depth that its speed predicts.
-const DEEP: f64 = 0.25;
+const LEAST_PART: f64 = 0.25;
 
 /// How far aside the points are by which it is found, in units of that: far enough for little of a depth under a plane
 /// to be lost; and beside an edge or a rim, where that told nothing, near enough for the corners not to cut the ray
 /// off.
-const ASIDE: f64 = 4.0;
+const BESIDE_THE_RAY: f64 = 4.0;
 const AT_EDGE: f64 = 1.0;
 
 /// Where a ray enters whose source is near the target, and which closes in with a `speed`.
@@ -250,14 +250,14 @@ fn entry<V: Vector>(
     let past = (size + size + gap) / direction.norm();
     let mut best = LatestEntry { at: past + roundings(16.0, past), is_certain: false };
     let (mut lambda, mut dull) = (past * number(0.125), 0);
-    for _ in 0..LOOKS {
+    for _ in 0..MAX_PLACES {
         let step = direction * lambda;
         let Some(left) = looks.left() else { break };
         // NaN ends this too.
         let Ok(moved) = Posed::translated(b, step) else { break };
         let moved = WithoutLines(&moved);
         let fall = lambda * speed;
-        let aside = number(if dull > 0 { AT_EDGE } else { ASIDE });
+        let aside = number(if dull > 0 { AT_EDGE } else { BESIDE_THE_RAY });
         // The step is rounded, coordinate by coordinate.
         let rounded = roundings(4.0, step.norm());
         let there = look_after([a, &moved], &from, [aside * fall, rounded], left);
@@ -266,7 +266,7 @@ fn entry<V: Vector>(
             let at = lambda / (there.times + V::Scalar::ONE);
             let at = at + roundings(16.0, at);
             // Nearer to the source it is deeper for how far it has gone, but not by much where it already is.
-            let is_enough = there.times * gap >= fall * number(DEEP) || at + at > best.at;
+            let is_enough = there.times * gap >= fall * number(LEAST_PART) || at + at > best.at;
             best = LatestEntry { at: best.at.min(at), is_certain: true };
             if is_enough && there.times >= V::Scalar::ONE {
                 break;
@@ -285,7 +285,7 @@ fn entry<V: Vector>(
             dull += usize::from(!(there.times > zero));
             lambda * number(0.5)
         };
-        if dull >= PATIENCE || !(lambda * speed > gap) {
+        if dull >= IDLE_PLACES || !(lambda * speed > gap) {
             break;
         }
     }

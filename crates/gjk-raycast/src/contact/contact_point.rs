@@ -6,7 +6,7 @@ use crate::symmetric::axes_across;
 use crate::{SignedDistance, Trajectory};
 
 /// As many points as a manifold has.
-pub(super) const MAX_POINTS: usize = 4;
+pub(super) const MANIFOLD_POINTS: usize = 4;
 
 /// The answer of [`contact`](crate::contact).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,14 +16,14 @@ pub struct Contact<V: Vector> {
     pub normal: V,
     /// The signed distance of the shapes, with its bounds and closest points.
     pub distance: SignedDistance<V>,
-    pub(super) points: [ContactPoint<V>; MAX_POINTS],
+    pub(super) points: [ContactPoint<V>; MANIFOLD_POINTS],
     pub(super) len: usize,
 }
 
 impl<V: Vector> Contact<V> {
     /// As many points as a manifold has.
     #[cfg(feature = "serde")]
-    pub(crate) const MAX_POINTS: usize = MAX_POINTS;
+    pub(crate) const MANIFOLD_POINTS: usize = MANIFOLD_POINTS;
 
     /// With the first of the points, as many as a manifold has.
     pub(crate) fn new(
@@ -31,7 +31,7 @@ impl<V: Vector> Contact<V> {
         distance: SignedDistance<V>,
         found: impl IntoIterator<Item = ContactPoint<V>>,
     ) -> Self {
-        let mut contact = Self { normal, distance, points: [ContactPoint::default(); MAX_POINTS], len: 0 };
+        let mut contact = Self { normal, distance, points: [ContactPoint::default(); MANIFOLD_POINTS], len: 0 };
         for (slot, point) in contact.points.iter_mut().zip(found) {
             *slot = point;
             contact.len += 1;

@@ -5,7 +5,7 @@ use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::clip::{Clipped, ClippedCorners, clip};
-use super::contact_point::MAX_POINTS;
+use super::contact_point::MANIFOLD_POINTS;
 use super::outline::{ContactPart, ContactPlane, Outline, ROOM};
 use super::reduction::{Candidate, Rank, WORTHWHILE, reduced};
 use super::surface::{MAX_SUPPORT_POINTS, Side};
@@ -16,12 +16,12 @@ use crate::symmetric::{Across, axes_across, cross, dot, way};
 
 /// How near a point is to a corner of a shape's feature if it counts as the corner, as a part of the smaller shape's
 /// size.
-const NEAR: f64 = 1.0 / 64.0;
+const AT_CORNER: f64 = 1.0 / 64.0;
 
 /// As a part of the smaller shape's size: how much farther apart than asked for the shapes may be at a point, and how
 /// much less deep than the deepest all points may be. While shapes move by less than half of it, the manifold keeps its
 /// corners.
-const SLACK: f64 = 1.0 / 1024.0;
+const KEPT: f64 = 1.0 / 1024.0;
 
 /// The sine of the angle from which on segments cross in one point.
 const CROSSES: f64 = 0.25;
@@ -81,7 +81,7 @@ compiled_once! {
         // Along no axis and no diagonal.
         let aside = V::from_fn(|i| V::Scalar::from_f64([1.0, 0.7549, 0.5698][i]));
         if answer.normal.dot(aside) < V::Scalar::ZERO {
-            let last: SmallVec<[_; MAX_POINTS]> = last.iter().map(|point| point.reversed()).collect();
+            let last: SmallVec<[_; MANIFOLD_POINTS]> = last.iter().map(|point| point.reversed()).collect();
             return by_clipping([b, a], &answer.reversed(), within, &last).reversed();
         }
         let normal = answer.normal;
@@ -132,9 +132,9 @@ impl<S: Scalar> Reach<S> {
     /// A point of a shape that is in the other one, or no farther from it than asked for, is no farther behind the
     /// supporting plane than the depth plus that distance.
     fn new<V: Vector<Scalar = S>>(answer: &SignedDistance<V>, within: S, size: S) -> Self {
-        let slack = size * S::from_f64(SLACK);
+        let slack = size * S::from_f64(KEPT);
         let slab = (within - answer.lower).max(S::ZERO) + slack + slack;
-        Self { within, slab, near: size * S::from_f64(NEAR), slack }
+        Self { within, slab, near: size * S::from_f64(AT_CORNER), slack }
     }
 }
 
@@ -142,11 +142,11 @@ impl<S: Scalar> Reach<S> {
 type Candidates<S> = SmallVec<[Candidate<S>; ROOM]>;
 
 /// The points that it has.
-type Chosen<S> = SmallVec<[Candidate<S>; MAX_POINTS]>;
+type Chosen<S> = SmallVec<[Candidate<S>; MANIFOLD_POINTS]>;
 
 /// The number of points that span an overlap.
 fn most<V: Vector>() -> usize {
-    if V::DIM == 2 { 2 } else { MAX_POINTS }
+    if V::DIM == 2 { 2 } else { MANIFOLD_POINTS }
 }
 
 /// Both shapes, each in the frame of the other's contact plane.

@@ -3,7 +3,7 @@
 use convex_support::Scalar;
 use smallvec::SmallVec;
 
-use super::contact_point::MAX_POINTS;
+use super::contact_point::MANIFOLD_POINTS;
 use super::outline::ROOM;
 use crate::symmetric::{Across, cross, way};
 
@@ -39,9 +39,9 @@ pub(super) fn reduced<S: Scalar>(
     candidates: &[Candidate<S>],
     has_last: bool,
     rank: impl Fn(usize) -> Rank,
-) -> SmallVec<[usize; MAX_POINTS]> {
+) -> SmallVec<[usize; MANIFOLD_POINTS]> {
     let count = candidates.len();
-    if count <= MAX_POINTS {
+    if count <= MANIFOLD_POINTS {
         return (0..count).collect();
     }
     let margin = if has_last { WORTHWHILE * 4.0 } else { WORTHWHILE };

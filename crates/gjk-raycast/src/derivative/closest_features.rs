@@ -10,7 +10,7 @@ use crate::symmetric::Symmetric;
 use crate::unit::power_of_two_near;
 
 /// The error of the normal, in units of the rounding of the points that it is computed from.
-const TILT: f64 = 64.0;
+const NORMAL_ERROR: f64 = 64.0;
 
 /// The largest error of a normal, as an angle, that is allowed for; with a larger one, features that visibly lean would
 /// count as parallel. It is also the largest angle within which features that may hold the normal are tried.
@@ -170,7 +170,7 @@ impl<V: Vector> ClosestFeatures<V> {
 
 /// The error of a normal that is known to rounding.
 pub(super) fn rounding<S: Scalar>() -> S {
-    S::EPSILON * S::from_f64(TILT)
+    S::EPSILON * S::from_f64(NORMAL_ERROR)
 }
 
 /// The error of the normal, as an angle: the rounding of its points divided by the gap between the cores, and the error

@@ -13,7 +13,7 @@ use crate::{
 
 /// How far overlapping bodies are pushed into one another to test for another direction out, as a part of their size,
 /// in units of the square root of ε. If bodies are farther apart than this at a hit, the cast had a target distance.
-const LITTLE: f64 = 64.0;
+const PUSH: f64 = 64.0;
 
 /// How much a push may gain: at most this multiple of its square, in units of the size, and at most this part of the
 /// size, which leaves room for single precision.
@@ -23,7 +23,7 @@ const GAIN: [f64; 2] = [256.0, 1e-4];
 const SAME_NORMAL: f64 = 1.0 - 1e-6;
 
 fn little<S: Scalar>(size: S) -> S {
-    size * S::EPSILON.sqrt() * S::from_f64(LITTLE)
+    size * S::EPSILON.sqrt() * S::from_f64(PUSH)
 }
 
 impl<V: Vector> Distance<V> {

@@ -13,7 +13,7 @@ use crate::unit::reciprocal_of_power;
 
 /// The angle by which a direction is turned to find the curves between which an edge lies, and how a support point
 /// moves, in units of the square root of ε.
-const TURN: f64 = 16.0;
+const PROBE: f64 = 16.0;
 
 /// How much a support point may differ from the prediction by its curvature, as a part of its predicted motion.
 const SURPRISE: f64 = 0.25;
@@ -71,7 +71,7 @@ impl<V: Vector> Bodies<'_, V> {
 
 /// The angle by which a direction is turned to test directions nearby.
 fn turn<S: Scalar>(tilt: S) -> S {
-    (S::EPSILON.sqrt() * S::from_f64(TURN)).max(tilt * S::from_f64(4.0))
+    (S::EPSILON.sqrt() * S::from_f64(PROBE)).max(tilt * S::from_f64(4.0))
 }
 
 /// The frame in which outlines are drawn.
@@ -186,7 +186,7 @@ fn is_foretold<V: Vector>(
 
 /// The longest step of the unit normal that counts as refinement, and the most steps that are taken.
 const LONGEST_STEP: f64 = 0.1;
-const MAX_STEPS: usize = 5;
+const MAX_REFINEMENTS: usize = 5;
 
 /// The number of rounds in which features that may hold the normal are tried, and the angle of each round as a part of
 /// the last one's.
@@ -240,7 +240,7 @@ impl<V: Vector> Bodies<'_, V> {
             seen.spans.iter().zip(kinds).all(|(span, kind)| kind.is_none_or(|kind| span.kind() == kind))
                 && !are_apart(&seen.outlines, seen.slack() + tilt)
         };
-        for _ in 0..MAX_STEPS {
+        for _ in 0..MAX_REFINEMENTS {
             let kinds = seen.spans.map(Span::kind);
             let Some(step) = seen.newton_step(radii) else {
                 // A face determines the normal, and each of two parallel edges a part of it.
@@ -269,7 +269,7 @@ impl<V: Vector> Bodies<'_, V> {
     pub(super) fn refine(&self, best: &mut ClosestFeatures<V>, closest: ClosestPoints<V>) -> bool {
         let mut length = V::Scalar::from_f64(LONGEST_STEP);
         let radii = self.cores.map(|core| core.radius);
-        for _ in 0..MAX_STEPS {
+        for _ in 0..MAX_REFINEMENTS {
             let Some(step) = best.newton_step(radii) else { break };
             let size = step.turn.length();
             // NaN ends this too.

@@ -7,7 +7,7 @@ use num_traits::Float as _;
 use super::state::in_range;
 use super::{Direction, Gjk};
 use crate::body::TracedSupport;
-use crate::curvature::{Turned, between, share_of_second, turned};
+use crate::curvature::{LARGEST_TURN, SAME_PIECE, Turned, between, share_of_second, turned};
 use crate::simplex::cross;
 use crate::symmetric::{Symmetric, dot};
 
@@ -139,20 +139,14 @@ struct Newton<V: Vector> {
 }
 
 /// Turns that fail to halve the bracket before the next step is one of GJK.
-const MAX_FAILURES: usize = 2;
+const IDLE_TURNS: usize = 2;
 
 /// How much lower than the first of two pieces the second is made, so that it is found next, relative to the bracket:
 /// more than the error of the model, by the number of failures before.
-const MODEL_ERROR: [f64; MAX_FAILURES] = [0.01, 0.2];
+const MODEL_ERROR: [f64; IDLE_TURNS] = [0.01, 0.2];
 
 /// A point contradicts the model if it takes away this part of the gain.
 const CONTRADICTION: f64 = 0.1;
-
-/// Two support points are of one smooth piece if the curvature at one predicts the other but for this part.
-const SAME_PIECE: f64 = 0.25;
-
-/// The largest tangent of an angle to turn by.
-const LARGEST: f64 = 0.5;
 
 impl<V: Vector> Newton<V> {
     fn new(noise: V::Scalar) -> Self {
@@ -177,7 +171,7 @@ impl<V: Vector> Newton<V> {
                 self.failures = 0;
             } else {
                 self.failures += 1;
-                if self.failures >= MAX_FAILURES {
+                if self.failures >= IDLE_TURNS {
                     (self.failures, self.failed) = (0, true);
                     return None;
                 }
@@ -212,7 +206,7 @@ impl<V: Vector> Newton<V> {
         if !size.is_finite() {
             return None;
         }
-        let largest = V::Scalar::from_f64(LARGEST);
+        let largest = V::Scalar::from_f64(LARGEST_TURN);
         let d = if size > largest { (d.0 * (largest / size), d.1 * (largest / size)) } else { d };
         let gain = -(piece.aside * d.0) - dot(d, h.times(d)) * V::Scalar::from_f64(0.5);
         let to = piece.turned_by(d)?;
@@ -253,7 +247,7 @@ impl<V: Vector> Newton<V> {
         let change = (u.dot(change), w.dot(change));
         let hessian = body.hessian(from, piece.basis);
         let is_vertex = hessian.is_zero();
-        let largest = V::Scalar::from_f64(LARGEST * LARGEST);
+        let largest = V::Scalar::from_f64(LARGEST_TURN * LARGEST_TURN);
         // NaN fails this too.
         if !(is_vertex || dot(change, change) <= largest) {
             return None;

@@ -12,7 +12,7 @@ use crate::{Cast, Outcome, Status};
 
 /// How far apart or deep the bodies may be within a converged bracket, in units of ε times the size and the way, plus the
 /// errors.
-const WIDTH: f64 = 1024.0;
+const WIDTH_OF_CASTS: f64 = 1024.0;
 
 /// How far a plane may be from where it should be, in the same unit.
 const PLANE: f64 = 64.0;
@@ -172,7 +172,7 @@ impl Casts<'_> {
             self.target
         };
         let off = gaps.fold(0.0, |off: f64, [lower, upper]| off.max(lower - self.target).max(least - upper));
-        let allowed = WIDTH * self.unit + tolerance * self.size;
+        let allowed = WIDTH_OF_CASTS * self.unit + tolerance * self.size;
         report.widest(query, off / allowed);
         report.claim((Law::Width, query), off <= allowed, || {
             let part = off / allowed;

@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// The width of a converged bracket, in errors of a bound: 8ε of the sizes and the offset, and the errors of the shapes.
-const WIDTH: f64 = 6.0;
+const WIDTH_OF_DISTANCES: f64 = 6.0;
 
 /// The error of points and of planes, in the same unit, in which their places count too.
 const POINTS: f64 = 64.0;
@@ -100,7 +100,7 @@ impl Laws<'_> {
     fn distance<V: Vector>(&mut self, how: &'static str, answer: &Distance<V>, tolerance: f64) {
         let [lower, upper, value] = [answer.lower, answer.upper, answer.distance].map(Scalar::as_f64);
         let is_converged = answer.status == Status::Converged;
-        let allowed = tolerance * upper + WIDTH * self.scale.of_bounds();
+        let allowed = tolerance * upper + WIDTH_OF_DISTANCES * self.scale.of_bounds();
         self.report.width("distance", is_converged, [lower, upper, allowed], || format!("{how}: {answer:?}"));
         self.report.claim((Law::Bound, "distance"), lower <= value && value <= upper, || {
             format!("{how}, the distance is not within its own bounds: {answer:?}")
@@ -127,7 +127,7 @@ impl Laws<'_> {
     fn signed_distance<V: Vector>(&mut self, how: &'static str, answer: &SignedDistance<V>, tolerance: f64) {
         let [lower, upper, value] = [answer.lower, answer.upper, answer.signed_distance].map(Scalar::as_f64);
         let is_converged = answer.status == Status::Converged;
-        let allowed = tolerance * self.scale.size + WIDTH * self.scale.of_bounds();
+        let allowed = tolerance * self.scale.size + WIDTH_OF_DISTANCES * self.scale.of_bounds();
         self.report.width("signed_distance", is_converged, [lower, upper, allowed], || format!("{how}: {answer:?}"));
         let is_ordered = lower <= value && value <= upper && answer.overlap == (value <= 0.0);
         self.report.claim((Law::Bound, "signed_distance"), is_ordered, || {

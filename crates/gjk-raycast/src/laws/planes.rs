@@ -23,7 +23,7 @@ pub trait Planes {
 pub(super) struct Stated<'s, V>(pub(super) AnyShape<'s, V>);
 
 /// How many times its own rounding a support point may be off, and the sums that are formed of it.
-const SLACK: f64 = 16.0;
+const ROUNDINGS: f64 = 16.0;
 
 impl<V: Vector> Planes for Stated<'_, V> {
     fn beyond(&self, normal: Numbers, point: &[Term]) -> [f64; 2] {
@@ -37,7 +37,7 @@ impl<V: Vector> Planes for Stated<'_, V> {
         let (along, place) = terms.fold((0.0, 0.0), |(along, place), (factor, v)| {
             (along + factor * dot(n, v), place + factor.abs() * length(v))
         });
-        let error = SLACK * (core.error.as_f64() + V::Scalar::EPSILON.as_f64() * (place + core.size().as_f64()));
+        let error = ROUNDINGS * (core.error.as_f64() + V::Scalar::EPSILON.as_f64() * (place + core.size().as_f64()));
         let value = along - reach.as_f64();
         [value - error, value + error]
     }

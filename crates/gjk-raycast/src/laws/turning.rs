@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// The times at which the bodies are looked at.
-const LOOKS: u32 = 12;
+const TIMES: u32 = 12;
 
 /// Casts two turning bodies with several options and starts, in both orders, and with ends at the hit and beside it,
 /// and looks at them at some times.
@@ -136,18 +136,18 @@ fn look(gap: Gap<'_>, told: &[Told], target: f64, report: &mut Report) {
         if let Some(one) = found.filter(|one| one.bounds()[1] <= latest) {
             // Bodies without an inside, or that graze, may have parted again.
             let earliest = one.bounds()[0];
-            let before = |k| earliest + (latest - earliest) * f64::from(k) / f64::from(LOOKS);
+            let before = |k| earliest + (latest - earliest) * f64::from(k) / f64::from(TIMES);
             let gap_at = |time| gap(time).map_or(f64::NEG_INFINITY, |gap| gap[0]);
             let apart = gap_at(latest);
-            let was_nearer = || (0..LOOKS).any(|k| gap_at(before(k)) < apart);
+            let was_nearer = || (0..TIMES).any(|k| gap_at(before(k)) < apart);
             report.claim((Law::Bound, "motion_cast"), apart <= target || was_nearer(), || {
                 format!("the bodies are {apart:e} apart at the upper bound: {}", one.answer())
             });
         }
     }
     let Some(one) = told.iter().max_by(|x, y| x.earliest().total_cmp(&y.earliest())) else { return };
-    for k in 0..if one.earliest() > 0.0 { LOOKS } else { 0 } {
-        let time = one.earliest() * f64::from(k) / f64::from(LOOKS);
+    for k in 0..if one.earliest() > 0.0 { TIMES } else { 0 } {
+        let time = one.earliest() * f64::from(k) / f64::from(TIMES);
         if let Some([_, upper]) = gap(time).filter(|_| time.is_finite()) {
             let law = if one.is_miss() { Law::Certain } else { Law::Bound };
             report.claim((law, "motion_cast"), upper >= target, || {

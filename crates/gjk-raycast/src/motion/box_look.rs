@@ -11,7 +11,7 @@
 use convex_support::{Hint, Parallelotope, Scalar, SupportMap as _, Vector};
 use num_traits::Float;
 
-use super::instant::{Instant, Limits, NEAR};
+use super::instant::{Instant, Limits, NEAR_IN_MOTION};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::boxes::{EDGES, Facet, Zonotope};
@@ -32,7 +32,7 @@ const PRODUCT: f64 = 3.0;
 
 /// How deep zero may be behind a facet that was the highest at the last look, for it to be taken again: this part of
 /// the distance from zero's foot to the sides of the facet. Deeper than that, zero may be nearer to another facet.
-const DEEP: f64 = 0.25;
+const BEHIND_FACET: f64 = 0.25;
 
 /// The error of a level, in units of the error of a bound by a support point. The level is a sum over six edges, each
 /// of which was turned, and the bound is a sum of two points.
@@ -78,7 +78,7 @@ impl<V: Vector> MovingPair<'_, V> {
         // A facet counts as one support point, since it takes the place of one, and the search among all facets as
         // another.
         let there = match self.facet.get().and_then(|span| Some(BoxFacet::new(&boxes, boxes.facet(span)?))) {
-            Some(kept) if kept.room > 0.0 && kept.facet.level > -kept.room * DEEP => kept,
+            Some(kept) if kept.room > 0.0 && kept.facet.level > -kept.room * BEHIND_FACET => kept,
             _ => {
                 self.count(1);
                 BoxFacet::new(&boxes, boxes.highest()?)
@@ -91,7 +91,7 @@ impl<V: Vector> MovingPair<'_, V> {
         let (lost, errors) = (rounding(size), core_a.error + core_b.error);
         let [level_error, from_near] = [LEVEL, FROM_NEAR].map(|factor| lost * Scalar::from_f64(factor) + errors);
         let level = V::Scalar::from_f64(facet.level) * self.unit;
-        let is_rough = !is_close && Float::abs(level) > level_error * Scalar::from_f64(NEAR);
+        let is_rough = !is_close && Float::abs(level) > level_error * Scalar::from_f64(NEAR_IN_MOTION);
         let (distance, gap, error, upper) = if is_rough {
             (level, level - level_error, from_near, Float::infinity())
         } else if limits.depth > Scalar::ZERO {

@@ -10,7 +10,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::free_interval::acceleration_if_free;
-use super::instant::{Approach, Base, Instant, Limits, NEAR, Stage};
+use super::instant::{Approach, Base, Instant, Limits, NEAR_IN_MOTION, Stage};
 use super::trajectory::TurningPlane;
 use crate::options::{MayBeLean as _, Rare, options};
 use crate::{Cast, Impact, LinearCastOptions, Miss, Outcome, StartInContact, Status, WarmStart};
@@ -20,7 +20,7 @@ use crate::{Cast, Impact, LinearCastOptions, Miss, Outcome, StartInContact, Stat
 pub(super) const AIM: f64 = 1.5;
 /// How often in a row neither the interval nor the distance may have been halved before the search halves the interval
 /// itself.
-pub(super) const PATIENCE: u8 = 2;
+pub(super) const IDLE_LOOKS: u8 = 2;
 
 /// How deep an overlap is looked for, in units of the error of the distance.
 const DEPTH: f64 = 2.0;
@@ -31,12 +31,12 @@ const GRAZE: f64 = 16.0;
 
 /// How deep the bodies may be at the upper bound of a converged answer: so many roundings of their size, or so many
 /// errors of their distance. It is half of what `docs/evidence.md` says of both bounds.
-const NARROW: f64 = 512.0;
+const NARROW_AT_END: f64 = 512.0;
 const NARROW_OF_ERROR: f64 = 8.0;
 
 /// If the normal has turned in a step by more than the root of this, in radians, the next step is not expected to be
 /// like it.
-const FAR: f64 = 0.25;
+const TURNED_FAR: f64 = 0.25;
 
 /// Times to examine in a motion cast, after which to give up. A contact takes about ten, and each turn near another
 /// body about as many; bodies that spin for long very near one another take the most.
@@ -333,7 +333,7 @@ impl<'p, V: Vector> Search<'p, V> {
         self.acceleration = acceleration;
         // If the normal has turned far, the next step will be less like the last one.
         let turned = self.turned();
-        if turned.length_squared() > Scalar::from_f64(FAR) {
+        if turned.length_squared() > Scalar::from_f64(TURNED_FAR) {
             let plane = TurningPlane { from: there.normal, to: there.normal + turned };
             self.acceleration = self.bodies.acceleration_along(plane, [there.time, there.time + self.step()]);
         }
@@ -377,8 +377,8 @@ impl<'p, V: Vector> Search<'p, V> {
     fn glance(&mut self, time: V::Scalar) -> Instant<V> {
         let limits = Limits { distance: self.enough_at(time), depth: Scalar::ZERO };
         let Instant { distance, error, .. } = self.near;
-        let is_near = distance * distance < error * self.bodies.size() * Scalar::from_f64(NEAR);
-        if is_near || self.slow > PATIENCE {
+        let is_near = distance * distance < error * self.bodies.size() * Scalar::from_f64(NEAR_IN_MOTION);
+        if is_near || self.slow > IDLE_LOOKS {
             self.beyond = self.beyond.filter(|beyond| beyond.is_close);
             return self.look(time, limits);
         }
@@ -437,7 +437,7 @@ impl<'p, V: Vector> Search<'p, V> {
         if width <= zero {
             return true;
         }
-        let narrow = (size * V::Scalar::EPSILON * number(NARROW)).max(error * number(NARROW_OF_ERROR))
+        let narrow = (size * V::Scalar::EPSILON * number(NARROW_AT_END)).max(error * number(NARROW_OF_ERROR))
             + size * self.options.tolerance;
         if from < time {
             // The last plane is of a later time than the first one of the bracket.

@@ -21,18 +21,18 @@ use crate::Status;
 
 /// By how much the bodies have to be deeper than they began, in ε of their sizes. The rounding of their places at the
 /// time is added, [`ROUNDED`] times.
-const SLACK: f64 = 16.0;
+const DEEPER: f64 = 16.0;
 
 /// If the bodies have sunk by a power of time that is no higher than this, they are taken to have sunk from the start
 /// on.
 const POWER: f64 = 4.0;
 
 /// If bodies are still as deep as they began after this many looks, the number of looks to come is estimated.
-const LONG: usize = 500;
+const MANY_LOOKS: usize = 500;
 
 /// Bodies that are deeper than this at the start, in units of the slack, are known to overlap a moment later too, when
 /// their places are rounded by more.
-const DEEP: f64 = 4.0;
+const DEEP_AT_START: f64 = 4.0;
 
 /// The part of the time until the bodies part that the next interval may take.
 const OUT: f64 = 0.9;
@@ -61,12 +61,12 @@ impl<V: Vector> Search<'_, V> {
     pub(super) fn begin_in_contact(&mut self) -> MotionEnd<V> {
         let number = V::Scalar::from_f64;
         let Instant { gap, distance, upper, error, .. } = self.near;
-        let slack = self.bodies.size() * V::Scalar::EPSILON * number(SLACK) + error * number(2.0);
+        let slack = self.bodies.size() * V::Scalar::EPSILON * number(DEEPER) + error * number(2.0);
         if !(slack.is_finite() && distance <= error) {
             // Neither contact nor distance is known, as with a support map that returns NaN.
             return MotionEnd::Undecided(Status::Stalled);
         }
-        let stage = if upper < slack * number(-DEEP) { Stage::Deep } else { Stage::Touching };
+        let stage = if upper < slack * number(-DEEP_AT_START) { Stage::Deep } else { Stage::Touching };
         let (width, tolerance) = (upper - gap, self.options.tolerance);
         self.base = Base { start: distance, highest: upper, width, slack, tolerance, ..Base::default() };
         self.options.tolerance = V::Scalar::ZERO;
@@ -157,7 +157,7 @@ impl<V: Vector> Search<'_, V> {
     pub(super) fn is_endless(&self) -> bool {
         let rest = self.options.max_time - self.near.time;
         let left = self.options.max_iterations.saturating_sub(self.looks);
-        self.looks > LONG
+        self.looks > MANY_LOOKS
             && matches!(self.base.stage, Stage::Touching | Stage::Deep)
             && self.step() * V::Scalar::from_f64(left as f64) < rest
     }

@@ -12,7 +12,7 @@ use crate::unit::length_bound;
 const KINK: f64 = 0.1;
 
 /// Bodies whose distance, or overlap, is less than this many errors of it are looked at exactly.
-pub(super) const NEAR: f64 = 64.0;
+pub(super) const NEAR_IN_MOTION: f64 = 64.0;
 
 /// By how much a level is lowered for bodies that touch, in units of the rounding of their places at the time.
 pub(super) const ROUNDED: f64 = 6.0;

@@ -11,7 +11,7 @@ use crate::shape::Shape;
 use crate::unit::length_bound;
 
 /// If the cosine of the angle between two edges is more than this, a parallelotope does not count as a box.
-const SKEW: f64 = 1e-6;
+const NOT_A_BOX: f64 = 1e-6;
 
 /// The thickness of a rectangle in units of its shorter edge: less than rounding, but enough for its normal to be known.
 const THICKNESS: f64 = 1.0 / (1_u64 << 60) as f64;
@@ -182,7 +182,7 @@ impl<'s, V: Vector> MovingBody<'s, V> {
             lengths[i] = length(edges[i]);
         }
         // If two edges have no length, all products are zero, and the core does not count as a box.
-        let is_orthogonal = |[i, j]: [usize; 2]| dot(edges[i], edges[j]).abs() < SKEW * lengths[i] * lengths[j];
+        let is_orthogonal = |[i, j]: [usize; 2]| dot(edges[i], edges[j]).abs() < NOT_A_BOX * lengths[i] * lengths[j];
         let is_box = [[0, 1], [1, 2], [2, 0]].into_iter().all(is_orthogonal);
         is_box.then(|| Parallelotope { center: center * per_unit, half_edges: edges.map(vector) })
     }

@@ -15,7 +15,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float;
 
-use super::instant::{Instant, Limits, NEAR};
+use super::instant::{Instant, Limits, NEAR_IN_MOTION};
 use super::moving_pair::MovingPair;
 use super::placed::{CornerFace, Placed};
 use crate::body::{PointPair, TracedSupport as _};
@@ -26,11 +26,11 @@ use crate::unit::is_moderate;
 
 /// How far the closest points of both cores may be from the support points across their plane, in errors, for them to
 /// count as closest.
-const IN_PLANE: f64 = 4.0;
+const POINT_IN_PLANE: f64 = 4.0;
 
 /// If closest points are apart by this part of the size of both bodies, the direction between them is known to
 /// rounding.
-const LONG: f64 = 1.0 / 16.0;
+const WELL_APART: f64 = 1.0 / 16.0;
 
 impl<V: Vector> MovingPair<'_, V> {
     /// The bodies at a time, by the closest points of their cores. `None` if these do not tell enough, or, near
@@ -63,11 +63,11 @@ impl<V: Vector> MovingPair<'_, V> {
         let (lower, radius) = (unit.dot(w + offset), pair.radius());
         let distance = lower - radius;
         let roughly = rounding(size) + pair.error();
-        if !is_close && distance > roughly * Scalar::from_f64(NEAR) {
+        if !is_close && distance > roughly * Scalar::from_f64(NEAR_IN_MOTION) {
             return Some(self.across(&placed, unit, points, [distance, roughly]));
         }
         // Not where they have passed through one another.
-        let is_known = length > size * Scalar::from_f64(LONG) && unit.dot(axis) > Scalar::ZERO;
+        let is_known = length > size * Scalar::from_f64(WELL_APART) && unit.dot(axis) > Scalar::ZERO;
         if !is_known || limits.depth > Scalar::ZERO {
             return None;
         }
@@ -95,7 +95,7 @@ impl<V: Vector> MovingPair<'_, V> {
         let along = known.along(unit);
         let (distance, error) = (lower - radius, along + slack(lower, radius));
         // If a number is NaN, the points do not count as closest.
-        if !(unit.dot(v) - lower <= error * Scalar::from_f64(IN_PLANE)) {
+        if !(unit.dot(v) - lower <= error * Scalar::from_f64(POINT_IN_PLANE)) {
             return None;
         }
         let is_apart = distance > error;
@@ -114,7 +114,7 @@ impl<V: Vector> MovingPair<'_, V> {
         }
         let face = self.closest.borrow().closest_face(placed)?;
         let (points, length) = (face.closest_points(), face.v.length());
-        let is_long = length > size * Scalar::from_f64(LONG);
+        let is_long = length > size * Scalar::from_f64(WELL_APART);
         let unit = if is_long { face.v / length } else { face.unit_across(axis)? };
         // Not where they have passed through one another.
         if !(unit.dot(axis) > Scalar::ZERO) {

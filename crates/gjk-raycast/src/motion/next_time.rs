@@ -4,7 +4,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::first_contact::{AIM, PATIENCE, Search};
+use super::first_contact::{AIM, IDLE_LOOKS, Search};
 use super::instant::Instant;
 use super::trajectory::TurningPlane;
 
@@ -64,7 +64,7 @@ impl<V: Vector> Search<'_, V> {
         let from_beyond = beyond.time + (beyond.distance - aim) / self.farther.map_or(beyond.closing, closing);
         let secant = time + width * (way / (distance - beyond.distance));
         let methods = if beyond.distance.abs() < way { [from_beyond, secant] } else { [next, secant] };
-        let quick = methods.into_iter().find(is_inside).filter(|_| self.slow <= PATIENCE);
+        let quick = methods.into_iter().find(is_inside).filter(|_| self.slow <= IDLE_LOOKS);
         quick.or_else(|| {
             let moved = width * self.bodies.speed_at(&self.near);
             let is_still = moved > Scalar::ZERO && moved < self.bodies.size() * Scalar::EPSILON;

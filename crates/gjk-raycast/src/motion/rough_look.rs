@@ -2,7 +2,7 @@
 
 use convex_support::{Scalar, Vector};
 
-use super::instant::{Instant, NEAR};
+use super::instant::{Instant, NEAR_IN_MOTION};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::SignedDistanceOptions;
@@ -47,7 +47,7 @@ impl<V: Vector> MovingPair<'_, V> {
         };
         let end = gjk(&mut state, pair, frame, options, None, &mut Observer::none());
         self.count(state.iterations);
-        let (distance, near) = (state.lower - radius, error * Scalar::from_f64(NEAR));
+        let (distance, near) = (state.lower - radius, error * Scalar::from_f64(NEAR_IN_MOTION));
         let unit = state.axis.unit()?;
         let known = [state.lower * scale - pair.radius(), error * scale];
         // If the distance is NaN, neither holds.

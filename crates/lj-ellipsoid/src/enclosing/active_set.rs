@@ -25,7 +25,7 @@ const FEW: usize = 512;
 const QUADRATIC: f64 = 1e-6;
 
 /// A gap that is certainly rounding.
-const ROUNDING: f64 = 1e-14;
+const ROUNDED_GAP: f64 = 1e-14;
 
 /// Improves the weights of a working set until their gap over it is at most this, in at most so many steps; returns the
 /// number of steps.
@@ -43,7 +43,7 @@ pub(crate) fn solve<P: Points>(
     let newton = options.method == EnclosingMethod::Newton;
     if search.complete && newton {
         // A few points are a working set that needs no pass: they are solved to rounding, and checked at the end.
-        search.improve(ROUNDING, search.max_iterations);
+        search.improve(ROUNDED_GAP, search.max_iterations);
         observer(search.at.observed(search.at.moments.log_det_gap()));
         let solved = search.finish(Status::Converged)?;
         if solved.status == Status::Converged {
@@ -59,7 +59,7 @@ pub(crate) fn solve<P: Points>(
         observer(search.at.observed(gap));
         let floor = search.rounding();
         if gap <= (0.5 * options.epsilon).max(floor) {
-            if !polishing || gap <= floor.max(ROUNDING) || gap > QUADRATIC {
+            if !polishing || gap <= floor.max(ROUNDED_GAP) || gap > QUADRATIC {
                 return search.finish(Status::Converged);
             }
             // Two more steps cost little. The final check, which tests all points anyway, shows whether they helped; if
@@ -69,7 +69,7 @@ pub(crate) fn solve<P: Points>(
             if !search.at.update() {
                 return search.finish(Status::Converged);
             }
-            search.improve(ROUNDING, search.iterations_left().min(2));
+            search.improve(ROUNDED_GAP, search.iterations_left().min(2));
             let polished = search.finish(Status::Converged)?;
             if polished.status == Status::Converged {
                 return Ok(polished);

@@ -17,7 +17,7 @@ pub(crate) enum Opening {
 
 /// The most Newton steps. Each can change the logarithm of a multiplier by one or more, so that ratios can span the
 /// range of `f64`.
-const MOST_STEPS: usize = 1000;
+const MOST_BARRIER_STEPS: usize = 1000;
 
 /// If the ascent of a row is this small against the descents of others, it is tested exactly.
 const LITTLE: f64 = 1e-9;
@@ -33,7 +33,7 @@ pub(crate) fn opening<D: Dimension>(dim: D, rows: &Rows, is_open: &dyn Fn(&[f64]
     let n = dim.get();
     let mut exponents = vec![0.0; rows.s.len()];
     let mut ratio = 0.0;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MOST_BARRIER_STEPS {
         let most = exponents.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let y: Vec<f64> = exponents.iter().map(|e| libm::exp(e - most)).collect();
         let (mut step, mut hessian) = (dim.zero(), dim.zero_matrix());

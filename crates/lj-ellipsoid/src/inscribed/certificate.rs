@@ -23,7 +23,7 @@ use crate::numerics::linalg::{UNIT_ROUNDOFF, cholesky, cholesky_log_det, dot, so
 use crate::numerics::twofold::Sum;
 
 /// The largest share of one by which errors may move the constraints with weight if the proof is to hold.
-const SMALL: f64 = 0.01;
+const MOVED_SHARE: f64 = 0.01;
 
 /// An upper bound of ln det B' for every ellipsoid { d' + B'u : |u| ≤ 1 } in { z : Pᵢ·z ≤ 1 + βᵢ }; infinite if the
 /// multipliers prove nothing.
@@ -73,7 +73,7 @@ pub(crate) fn log_det_at_most<D: Dimension>(
     let bent = (residual + moved + UNIT_ROUNDOFF * size) * radius;
     // Entries of S, and its factor, are rounded: ln det(S + E) ≥ ln det S − 1.1·|S⁻¹||E| for small errors E.
     let loosened = (unit + 8.0 * UNIT_ROUNDOFF) * size * norm_of_inverse(dim, s);
-    if !(bent < SMALL && loosened < SMALL) {
+    if !(bent < MOVED_SHARE && loosened < MOVED_SHARE) {
         return f64::INFINITY;
     }
     let trace = (total.total() + bent) * (1.0 + 2.0 * unit + 8.0 * UNIT_ROUNDOFF);

@@ -127,18 +127,18 @@ fn images<P: Points>(points: &P, shape: &Shape<P::Dim>) -> (Vec<f64>, f64) {
                 along += term;
                 size += term.abs();
             }
-            if size > CANCELLING * a {
+            if size > TERMS_CANCEL * a {
                 let to = axis.iter().copied().zip(v.iter().copied());
                 along = twofold::dot(to.chain(axis.iter().zip(center).map(|(x, c)| (*x, -c))));
             }
             images.push(along / a);
         }
     }
-    (images, (n + 3) as f64 * UNIT_ROUNDOFF * CANCELLING)
+    (images, (n + 3) as f64 * UNIT_ROUNDOFF * TERMS_CANCEL)
 }
 
 /// Terms larger than this, in a coordinate of an image of at most one, cancel.
-const CANCELLING: f64 = 4.0;
+const TERMS_CANCEL: f64 = 4.0;
 
 /// The hull of points, in the coordinates of their images.
 struct Hull<'a> {

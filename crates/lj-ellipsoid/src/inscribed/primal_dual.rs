@@ -78,7 +78,7 @@ const WORTH_BOUNDING: f64 = 1e-3;
 
 /// Steps taken beyond the required gap, each of which shrinks it by two to three orders, and the gap they aim at.
 const POLISHING_STEPS: usize = 3;
-const ROUNDING: f64 = 1e-13;
+const POLISHED_GAP: f64 = 1e-13;
 
 /// Below this gap steps are full ones, and polishing is worth its cost.
 const NEAR: f64 = 1e-6;
@@ -238,7 +238,7 @@ impl Record {
             }
         }
         if gap <= 0.5 * options.epsilon {
-            if gap <= ROUNDING || gap > NEAR || self.polishing == 0 || out_of_steps {
+            if gap <= POLISHED_GAP || gap > NEAR || self.polishing == 0 || out_of_steps {
                 return Some(Status::Converged);
             }
             self.polishing -= 1;

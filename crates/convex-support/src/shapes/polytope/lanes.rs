@@ -7,13 +7,13 @@ use alloc::vec::Vec;
 use crate::{Scalar, Vector};
 
 /// Points side by side: a multiple of the width of a vector register on every target.
-pub(crate) const WIDTH: usize = 4;
+pub(crate) const PLANES: usize = 4;
 
 /// Longer lists are searched in chunks of this many blocks, at first for the farthest support value alone.
 const BLOCKS: usize = 16;
 
-/// Up to [`WIDTH`] points, coordinate by coordinate.
-type Block<S> = [[S; WIDTH]; 3];
+/// Up to [`PLANES`] points, coordinate by coordinate.
+type Block<S> = [[S; PLANES]; 3];
 
 /// Points stored coordinate by coordinate.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +47,7 @@ impl<V: Vector> Lanes<V> {
         }
         let chunk = &self.blocks[first..self.blocks.len().min(first + BLOCKS)];
         let place = place_of_farthest(chunk, dx, dy, dz).as_f64();
-        (first * WIDTH + place as usize).min(self.count - 1)
+        (first * PLANES + place as usize).min(self.count - 1)
     }
 }
 
@@ -56,15 +56,15 @@ pub(super) fn coordinate<V: Vector>(v: V, i: usize) -> V::Scalar {
     if i < V::DIM { v.get(i) } else { V::Scalar::ZERO }
 }
 
-/// The numbers of each of a list, [`WIDTH`] of the list side by side; the last block is filled up with the last of the
+/// The numbers of each of a list, [`PLANES`] of the list side by side; the last block is filled up with the last of the
 /// list.
 pub(super) fn side_by_side<T: Copy, S, const NUMBERS: usize>(
     list: &[T],
     number: impl Fn(T, usize) -> S,
-) -> Vec<[[S; WIDTH]; NUMBERS]> {
+) -> Vec<[[S; PLANES]; NUMBERS]> {
     let lane = |chunk: &[T], l: usize| chunk[l.min(chunk.len() - 1)];
     let block = |chunk: &[T]| core::array::from_fn(|i| core::array::from_fn(|l| number(lane(chunk, l), i)));
-    list.chunks(WIDTH).map(block).collect()
+    list.chunks(PLANES).map(block).collect()
 }
 
 /// The support value of the points of each lane along a direction.
@@ -72,10 +72,10 @@ pub(super) fn side_by_side<T: Copy, S, const NUMBERS: usize>(
 /// Compilers turn this loop into vector instructions only apart from its caller. And an array for the direction would
 /// be written number by number and read in pairs, which takes longer than a dozen points.
 #[inline(never)]
-fn farthest_reaches<S: Scalar>(blocks: &[Block<S>], dx: S, dy: S, dz: S) -> [S; WIDTH] {
-    let mut best = [-S::infinity(); WIDTH];
+fn farthest_reaches<S: Scalar>(blocks: &[Block<S>], dx: S, dy: S, dz: S) -> [S; PLANES] {
+    let mut best = [-S::infinity(); PLANES];
     for [x, y, z] in blocks {
-        for l in 0..WIDTH {
+        for l in 0..PLANES {
             let reach = dx * x[l] + dy * y[l] + dz * z[l];
             best[l] = if reach > best[l] { reach } else { best[l] };
         }
@@ -87,11 +87,11 @@ fn farthest_reaches<S: Scalar>(blocks: &[Block<S>], dx: S, dy: S, dz: S) -> [S; 
 /// points' own type: then support value and place are chosen by the same vector instructions.
 #[inline(never)]
 fn place_of_farthest<S: Scalar>(blocks: &[Block<S>], dx: S, dy: S, dz: S) -> S {
-    let width = S::from_f64(WIDTH as f64);
-    let mut here: [S; WIDTH] = core::array::from_fn(|l| S::from_f64(l as f64));
-    let (mut best, mut place) = ([-S::infinity(); WIDTH], here);
+    let width = S::from_f64(PLANES as f64);
+    let mut here: [S; PLANES] = core::array::from_fn(|l| S::from_f64(l as f64));
+    let (mut best, mut place) = ([-S::infinity(); PLANES], here);
     for [x, y, z] in blocks {
-        for l in 0..WIDTH {
+        for l in 0..PLANES {
             let reach = dx * x[l] + dy * y[l] + dz * z[l];
             place[l] = if reach > best[l] { here[l] } else { place[l] };
             best[l] = if reach > best[l] { reach } else { best[l] };

@@ -30,7 +30,7 @@ use crate::{Core, CoreKind, Feature, Hint, Rounding, Scalar, SupportMap, Vector}
 #[cfg(feature = "hull")]
 pub use faceted::Faceted;
 #[cfg(feature = "hull")]
-pub(crate) use lanes::WIDTH as PLANES;
+pub(crate) use lanes::PLANES;
 #[cfg(feature = "hull")]
 pub(crate) use planes::{Planes, facet};
 

@@ -1,14 +1,14 @@
 //! The planes of a polytope's facets, side by side.
 
-use super::lanes::WIDTH;
+use super::lanes::PLANES;
 use crate::Vector;
 
-/// [`WIDTH`] planes, each a unit outward normal by coordinates and the polytope's support value along it from the
+/// [`PLANES`] planes, each a unit outward normal by coordinates and the polytope's support value along it from the
 /// middle.
-pub(crate) type Planes<S> = [[S; WIDTH]; 4];
+pub(crate) type Planes<S> = [[S; PLANES]; 4];
 
 /// The normal of a facet, and the polytope's support value along it from the middle.
 pub(crate) fn facet<V: Vector>(planes: &[Planes<V::Scalar>], index: usize) -> (V, V::Scalar) {
-    let (planes, l) = (&planes[index / WIDTH], index % WIDTH);
+    let (planes, l) = (&planes[index / PLANES], index % PLANES);
     (V::from_fn(|i| planes[i][l]), planes[3][l])
 }

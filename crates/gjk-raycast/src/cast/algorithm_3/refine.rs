@@ -13,13 +13,13 @@ use crate::cast::bracket::Bracket;
 use crate::cast::line::Line;
 use crate::cast::ray_frame::RayFrame;
 use crate::cast::{RayContact, Stop};
-use crate::curvature::{between, is_stiff_across, share_of_second, swept, turned};
+use crate::curvature::{LARGEST_TURN, SAME_PIECE, between, is_stiff_across, share_of_second, swept, turned};
 use crate::simplex::{MAX_POINTS, Simplex};
 use crate::symmetric::{Across, Symmetric, dot, way};
 
 /// Exchanges of a point that gain nothing before the line is moved into the facet, and steps by curvature before the
 /// facet's own normal is taken.
-const MAX_FAILURES: usize = 3;
+const IDLE_EXCHANGES: usize = 3;
 
 /// How often the line is moved at a time, each time twice as far, until it pierces the simplex.
 const MAX_MOVES: usize = 6;
@@ -110,7 +110,7 @@ impl<V: Vector> Pierced<V> {
         self.failures += usize::from(!gains);
         let mut step = V::Scalar::from_f64(8.0) * bracket.noise;
         for _ in 0..MAX_MOVES {
-            if next.is_some() && self.failures < MAX_FAILURES {
+            if next.is_some() && self.failures < IDLE_EXCHANGES {
                 break;
             }
             self.failures = 0;
@@ -141,7 +141,7 @@ impl<S: Scalar> CurvatureSteps<S> {
     }
 
     fn may_turn(&self) -> bool {
-        self.failures <= MAX_FAILURES
+        self.failures <= IDLE_EXCHANGES
     }
 
     /// Takes a step, given by the normal and the tangent of the angle to it, if the angle shrinks.
@@ -177,12 +177,6 @@ impl<V: Vector> Recent<V> {
         self.0.push(point, along, PointPair::default());
     }
 }
-
-/// Two support points are of one smooth piece if the curvature at one predicts this much of the other.
-const SAME_PIECE: f64 = 0.25;
-
-/// The largest tangent of an angle to turn by.
-const LARGEST: f64 = 0.5;
 
 /// The normal of the plane that should be crossed last, and the tangent of the angle to it, by the points found so
 /// far. `None` if curvature does not determine it: at a vertex, or if three points of different pieces span a facet.
@@ -228,7 +222,7 @@ fn newton<V: Vector>(
     };
     let angle = dot(d, d).sqrt() / n.length();
     // NaN fails this too.
-    if !(angle <= V::Scalar::from_f64(LARGEST)) {
+    if !(angle <= V::Scalar::from_f64(LARGEST_TURN)) {
         return None;
     }
     (n + seen.frame.vector(d)).unit().map(|to| (to, angle))

@@ -51,7 +51,7 @@ impl<V: Vector> RayPiece<V> {
         let alone = QuadraticModel { tau: through, p, hessian: Symmetric::ZERO };
         let change = way(self.alpha.across(), alpha.across());
         let angle = dot(change, change) / alpha.length_squared();
-        if angle > number(FAR * FAR) || self.hessian.is_zero() {
+        if angle > number(LARGEST_PIECE * LARGEST_PIECE) || self.hessian.is_zero() {
             return alone;
         }
         // τ = −h, so that it sinks where h rises.
@@ -59,7 +59,7 @@ impl<V: Vector> RayPiece<V> {
         let moved = dot(turned.shift, turned.shift);
         let error = turned.rise * angle.max(number(4.0) * moved).max(number(1.0 / 64.0)).sqrt();
         // NaN fails this too.
-        if !(moved <= number(FAR * FAR) && through - turned.rise + error >= least) {
+        if !(moved <= number(LARGEST_PIECE * LARGEST_PIECE) && through - turned.rise + error >= least) {
             return alone;
         }
         let tau = ((through - turned.rise).max(least) + error_weight * error).min(through);
@@ -75,20 +75,20 @@ impl<V: Vector> RayPiece<V> {
         let (moved, _) = self.p.edge_to(&other.p);
         let error = (moved.0 - expected.0, moved.1 - expected.1);
         let squared = dot(moved, moved);
-        let allowed = (noise * noise).max(number(SAME_PIECE * SAME_PIECE) * squared);
+        let allowed = (noise * noise).max(number(OFF_PIECE * OFF_PIECE) * squared);
         squared <= V::Scalar::ONE && dot(error, error) <= allowed
     }
 }
 
 /// The largest angle of a plane, and the longest path of the point, in units of the body's size, for a piece to be a
 /// quadratic model.
-const FAR: f64 = 0.5;
+const LARGEST_PIECE: f64 = 0.5;
 
 /// The most pieces that are kept.
 pub(super) const MAX_PIECES: usize = 4;
 
 /// The largest distance of a point from its prediction, as a part of its path, for it to be of the same piece.
-const SAME_PIECE: f64 = 0.5;
+const OFF_PIECE: f64 = 0.5;
 
 /// Whether zero is within a triangle, farther than `by` from its sides: twice the area of zero with a side is the
 /// length of the side times its distance.

@@ -33,7 +33,7 @@ struct RoundedEntry<S> {
 }
 
 /// Support points of the search.
-const MAX_STEPS: usize = 32;
+const MAX_ROUNDED_STEPS: usize = 32;
 
 /// Closes the bracket, or finds a plane that the whole ray is before; beginning across `first`, and with planes tilted
 /// by `tilt` until the line enters the swept points.
@@ -54,7 +54,7 @@ pub(super) fn rounded<V: Vector>(
     let mut alpha = best.alpha;
     let (mut last, mut exchanges) = (V::Scalar::infinity(), MAX_EXCHANGES);
     let mut kept = Kept { points: [p; 4], len: 1 };
-    for _ in 0..MAX_STEPS {
+    for _ in 0..MAX_ROUNDED_STEPS {
         let Some(at) = enter(kept.points(), radius, noise) else {
             kept.approach(bracket, frame, &mut best, &mut alpha, tilt)?;
             continue;

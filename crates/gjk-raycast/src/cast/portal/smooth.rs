@@ -16,13 +16,13 @@ use crate::cast::{RayContact, Stop};
 use crate::symmetric::{Symmetric, dot};
 
 /// Support points of the search.
-const MAX_STEPS: usize = 12;
+const MAX_SMOOTH_STEPS: usize = 12;
 
 /// Planes along the ray, between it and an ellipsoid that it misses, that do not separate it from the body.
 const MAX_MISSES: usize = 2;
 
 /// The largest error, as an angle, of a plane from a warm start, if it is of the same piece.
-const FAR: f64 = 0.3;
+const WARM_ERROR: f64 = 0.3;
 
 /// Replaces the body by the ellipsoid that osculates it, takes the plane where the ray enters that, and so on.
 ///
@@ -39,7 +39,7 @@ pub(super) fn smooth<V: Vector>(
     let mut best = BestPlane::none(bracket.end());
     let mut pieces = RayPieces::new();
     let (mut last, mut misses) = (V::Scalar::infinity(), 0);
-    for _ in 0..MAX_STEPS {
+    for _ in 0..MAX_SMOOTH_STEPS {
         let Next { n, alpha } = next;
         let hessian = frame.hessian(bracket.body, n);
         // For a plane along the ray it never is, since H·n = 0 and n is across the ray.
@@ -81,7 +81,7 @@ pub(super) fn smooth<V: Vector>(
             if is_warm && misses == 0 {
                 let (x, y) = hessian.solve(p.across());
                 // NaN fails this too.
-                if !((x * x + y * y) * n.length_squared() <= V::Scalar::from_f64(FAR * FAR)) {
+                if !((x * x + y * y) * n.length_squared() <= V::Scalar::from_f64(WARM_ERROR * WARM_ERROR)) {
                     *seen = Some(p);
                     return Err(Stop::InDoubt);
                 }

@@ -23,14 +23,14 @@ use crate::curvature::{between, is_stiff_across, share_of_second};
 use crate::symmetric::{Across, Symmetric, cross, dot, way};
 
 /// Support points of the search.
-const MAX_STEPS: usize = 40;
+const MAX_SQP_STEPS: usize = 40;
 
 /// Steps of the models that do not halve the bracket before the next one is the portal's own plane.
-const MAX_FAILURES: i32 = 3;
+const IDLE_MODELS: i32 = 3;
 
 /// The largest tilt of the next plane from pieces that do not enclose the line, in units of the tilt of the last
 /// planes.
-const FAR: f64 = 8.0;
+const OPEN_TILT: f64 = 8.0;
 
 /// Brings a portal nearer, by planes that the curvature of the body suggests as long as they close the bracket fast,
 /// and by the portal's own. The points were found by planes tilted from one another by `tilt`.
@@ -51,7 +51,7 @@ pub(super) fn sqp<V: Vector>(
         && let Some(newest) = pieces.all().last()
     {
         let is_enclosed = portal.high.is_finite();
-        let far = tilt * V::Scalar::from_f64(FAR) * newest.alpha.length();
+        let far = tilt * V::Scalar::from_f64(OPEN_TILT) * newest.alpha.length();
         let is_near = |(x, y): Across<_>| x * x + y * y <= far * far;
         match best_plane(pieces.all(), newest.alpha, bracket.noise, Scalar::ONE) {
             Some((to, _)) if is_enclosed || is_near(way(newest.alpha.across(), to.across())) => alpha = to,
@@ -61,7 +61,7 @@ pub(super) fn sqp<V: Vector>(
     }
     let start = bracket.low();
     let mut steps = Steps { gap: V::Scalar::infinity(), failures: 0, error_weight: V::Scalar::ONE };
-    for _ in 0..MAX_STEPS {
+    for _ in 0..MAX_SQP_STEPS {
         let p = frame.support_of(bracket, alpha.plane())?;
         best.improve(bracket, frame, alpha, &p, Scalar::ZERO)?;
         let same = pieces.push(piece(bracket, frame, p, alpha), bracket.noise);
@@ -130,14 +130,14 @@ impl<S: Scalar> Steps<S> {
         best: &BestPlane<V>,
         alpha: Alpha<S>,
     ) -> Option<Alpha<S>> {
-        let suggested = if self.failures < MAX_FAILURES || portal.high.is_infinite() {
+        let suggested = if self.failures < IDLE_MODELS || portal.high.is_infinite() {
             best_plane(pieces.all(), alpha, bracket.noise, self.error_weight)
         } else {
             None
         };
         let gap = suggested.map_or(portal.high, |(_, value)| value.min(portal.high)) - best.tau;
         let halved = gap <= self.gap * S::from_f64(0.5);
-        let restarts = self.failures >= MAX_FAILURES && portal.high.is_finite();
+        let restarts = self.failures >= IDLE_MODELS && portal.high.is_finite();
         self.failures = if halved || restarts { 0 } else { self.failures + 1 };
         self.gap = gap;
         let to = match suggested {

@@ -27,7 +27,7 @@ use crate::symmetric::dot;
 const MAX_OUTSIDE: usize = 16;
 
 /// The tilt up to which planes show the same smooth piece.
-const NEAR: f64 = 0.01;
+const SAME_TILT: f64 = 0.01;
 
 /// Exchanges of a point that bring the portal no nearer.
 pub(super) const MAX_EXCHANGES: usize = 12;
@@ -62,7 +62,7 @@ pub(super) fn triangle<V: Vector>(
     let mut portal = if tilt < Scalar::ONE { mixed(frame, &p, &q) } else { None };
     if portal.is_none() {
         // Pieces found by planes so near one another determine the next plane before the line is enclosed.
-        if p.alpha.is_some() && tilt <= V::Scalar::from_f64(NEAR) && bracket.is_curved {
+        if p.alpha.is_some() && tilt <= V::Scalar::from_f64(SAME_TILT) && bracket.is_curved {
             match sqp(bracket, frame, OnLine::unknown([p, p, q]), planes.best, tilt) {
                 Err(Stop::InDoubt) => {}
                 found => return found,

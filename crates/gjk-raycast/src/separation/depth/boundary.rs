@@ -16,18 +16,18 @@ use crate::separation::near::faces::turned_right;
 use crate::simplex::{MAX_POINTS, nearest_face};
 
 /// Corners of a facet, of which a polygon's has two and a polyhedron's three.
-const MAX_CORNERS: usize = MAX_POINTS - 1;
+const FACET_CORNERS: usize = MAX_POINTS - 1;
 
 /// The rounding of a normal, in ε, if its edges are across one another.
-const TILT: f64 = 8.0;
+const NORMAL_ROUNDED: f64 = 8.0;
 
 /// The sine of the angle between two edges below which the normal of a facet is computed with more care: at most
 /// this, and if distances need not be accurate to the last digit so many ε, in units of their accuracy.
-const ACUTE: f64 = 0.125;
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+const ACUTE_FACET: f64 = 0.125;
+const ROUNDING_OF_HEIGHT: f64 = 64.0 * f64::EPSILON;
 
 /// The most facets of a walk to one that a point is beyond.
-const MAX_WALK: usize = 32;
+const MAX_WALK_BEYOND: usize = 32;
 
 /// Vertices, and facets, that there is room for without an allocation: an insertion adds a vertex and no more than two
 /// facets.
@@ -42,9 +42,9 @@ const NONE: u16 = u16::MAX;
 /// A facet: an edge of a polygon or a triangle of a polyhedron, its corners counterclockwise as seen from outside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Facet<V: Vector> {
-    corners: [u16; MAX_CORNERS],
+    corners: [u16; FACET_CORNERS],
     /// The facets across the ridges opposite to each corner.
-    across: [u16; MAX_CORNERS],
+    across: [u16; FACET_CORNERS],
     pub(super) normal: V,
     /// How far, by the rounding of the normal, a point at unit distance may seem above or below the facet.
     tilt: V::Scalar,
@@ -98,7 +98,7 @@ struct Slot {
 /// ridge's, in this order; in 2D the ridge is one vertex.
 #[derive(Clone, Copy, Debug)]
 struct Fresh {
-    ridge: [u16; MAX_CORNERS - 1],
+    ridge: [u16; FACET_CORNERS - 1],
     /// The facet beyond the horizon, and the entry of its `across` that will lead here.
     outer: u16,
     back: u8,
@@ -166,7 +166,7 @@ impl<V: Vector> Boundary<V> {
     /// No polytope yet. The distances of its facets are to be known to `accuracy`, relative to its size, or as well as
     /// may be.
     pub(super) fn new(accuracy: f64) -> Self {
-        let acute = (ROUNDING / accuracy).min(ACUTE);
+        let acute = (ROUNDING_OF_HEIGHT / accuracy).min(ACUTE_FACET);
         Self {
             vertices: SmallVec::new(),
             facets: SmallVec::new(),
@@ -182,12 +182,12 @@ impl<V: Vector> Boundary<V> {
     /// length, or has no volume.
     pub(super) fn begin(&mut self, points: &[Vertex<V>], thickness: V::Scalar) -> bool {
         // Facet k is the one without vertex k, seen from outside where the last point is behind the last facet.
-        let faces: &[[u16; MAX_CORNERS]] = if V::DIM == 2 {
+        let faces: &[[u16; FACET_CORNERS]] = if V::DIM == 2 {
             &[[1, 2, NONE], [2, 0, NONE], [0, 1, NONE]]
         } else {
             &[[2, 1, 3], [0, 2, 3], [1, 0, 3], [0, 1, 2]]
         };
-        let is_beyond_base = |order: [usize; MAX_CORNERS]| {
+        let is_beyond_base = |order: [usize; FACET_CORNERS]| {
             let corners = order.map(|i| points[i].point);
             is_beyond(&corners[..V::DIM], points[V::DIM].point)
         };
@@ -221,7 +221,7 @@ impl<V: Vector> Boundary<V> {
 
     #[inline(never)]
     fn grow(&mut self, &vertex: &Vertex<V>, facets: usize) {
-        let none = [NONE; MAX_CORNERS];
+        let none = [NONE; FACET_CORNERS];
         let facet = Facet { corners: none, across: none, normal: V::ZERO, tilt: V::Scalar::ZERO, looked: 0 };
         self.vertices.push(Node { vertex, ridges: [NONE; 2] });
         for _ in 0..facets {
@@ -258,7 +258,7 @@ impl<V: Vector> Boundary<V> {
 
     /// The corners of a facet, of which there are as many as dimensions.
     #[inline]
-    pub(super) fn corners(&self, index: usize) -> [u16; MAX_CORNERS] {
+    pub(super) fn corners(&self, index: usize) -> [u16; FACET_CORNERS] {
         self.facets[index].corners
     }
 
@@ -268,7 +268,7 @@ impl<V: Vector> Boundary<V> {
     }
 
     #[inline]
-    pub(super) fn corner_points(&self, index: usize) -> [V; MAX_CORNERS] {
+    pub(super) fn corner_points(&self, index: usize) -> [V; FACET_CORNERS] {
         points(&self.vertices, self.facets[index].corners)
     }
 
@@ -341,7 +341,7 @@ impl<V: Vector> Boundary<V> {
         let (facets, vertices, inner) = (self.facets.as_slice(), self.vertices.as_slice(), self.inner.as_slice());
         let multiple = |i: usize| facets[i].normal.dot(point) / inner[i];
         let mut here = (self.last, multiple(self.last));
-        for _ in 0..MAX_WALK {
+        for _ in 0..MAX_WALK_BEYOND {
             if here.1 > V::Scalar::ONE && inner[here.0].is_finite() && is_seen(&facets[here.0], vertices, point) {
                 return Some(here.0);
             }
@@ -482,8 +482,8 @@ impl<V: Vector> Facet<V> {
     #[inline(always)]
     fn new(
         vertices: &[Node<V>],
-        corners: [u16; MAX_CORNERS],
-        across: [u16; MAX_CORNERS],
+        corners: [u16; FACET_CORNERS],
+        across: [u16; FACET_CORNERS],
         acute: f64,
     ) -> (Self, V::Scalar) {
         let at = points(vertices, corners);
@@ -496,7 +496,7 @@ impl<V: Vector> Facet<V> {
 
 /// The points of the corners of a facet; in 2D one of them twice.
 #[inline(always)]
-fn points<V: Vector>(vertices: &[Node<V>], corners: [u16; MAX_CORNERS]) -> [V; MAX_CORNERS] {
+fn points<V: Vector>(vertices: &[Node<V>], corners: [u16; FACET_CORNERS]) -> [V; FACET_CORNERS] {
     core::array::from_fn(|i| vertices[usize::from(corners[i.min(V::DIM - 1)])].vertex.point)
 }
 
@@ -507,9 +507,9 @@ fn sliver_normal<V: Vector>(corner: V) -> (V, V::Scalar) {
 }
 
 /// The unit normal of an edge, to the right of it, and its rounding for a point at unit distance.
-fn edge_normal<V: Vector>([a, b, _]: [V; MAX_CORNERS]) -> (V, V::Scalar) {
+fn edge_normal<V: Vector>([a, b, _]: [V; FACET_CORNERS]) -> (V, V::Scalar) {
     let normal = turned_right(b - a).unit();
-    normal.map_or_else(|| sliver_normal(a), |normal| (normal, V::Scalar::from_f64(TILT) * V::Scalar::EPSILON))
+    normal.map_or_else(|| sliver_normal(a), |normal| (normal, V::Scalar::from_f64(NORMAL_ROUNDED) * V::Scalar::EPSILON))
 }
 
 /// The unit normal of a triangle, counterclockwise as seen from where it points to, and its rounding for a point at
@@ -519,7 +519,7 @@ fn edge_normal<V: Vector>([a, b, _]: [V; MAX_CORNERS]) -> (V, V::Scalar) {
 /// Any two edges are taken, unless they are nearly along one another: the square of the sine of their angle less than
 /// `acute`. To choose the best two takes a processor as long as all the rest.
 #[inline(always)]
-fn triangle_normal<V: Vector>([a, b, c]: [V; MAX_CORNERS], acute: f64) -> (V, V::Scalar) {
+fn triangle_normal<V: Vector>([a, b, c]: [V; FACET_CORNERS], acute: f64) -> (V, V::Scalar) {
     let (u, v) = (edge(a, b), edge(a, c));
     let (squared_u, squared_v) = (dot(u, u), dot(v, v));
     let normal = cross(&u, &v);
@@ -534,7 +534,7 @@ fn triangle_normal<V: Vector>([a, b, c]: [V; MAX_CORNERS], acute: f64) -> (V, V:
 /// The same by the two shortest edges, which leave the least rounding.
 #[cold]
 #[inline(never)]
-fn careful_normal<V: Vector>([a, b, c]: [V; MAX_CORNERS]) -> (V, V::Scalar) {
+fn careful_normal<V: Vector>([a, b, c]: [V; FACET_CORNERS]) -> (V, V::Scalar) {
     let (ab, bc, ca) = (edge(a, b), edge(b, c), edge(c, a));
     let (sab, sbc, sca) = (dot(ab, ab), dot(bc, bc), dot(ca, ca));
     let (u, v, sum) = if sab >= sbc && sab >= sca {
@@ -554,7 +554,7 @@ fn careful_normal<V: Vector>([a, b, c]: [V; MAX_CORNERS]) -> (V, V::Scalar) {
 #[inline(always)]
 fn unit_normal<V: Vector>(normal: Vec3, area: f64, sum: f64) -> (V, V::Scalar) {
     let per = area.sqrt().recip();
-    let tilt = V::Scalar::from_f64(0.5 * TILT * sum * per) * V::Scalar::EPSILON;
+    let tilt = V::Scalar::from_f64(0.5 * NORMAL_ROUNDED * sum * per) * V::Scalar::EPSILON;
     (V::from_fn(|i| V::Scalar::from_f64(normal[i] * per)), tilt)
 }
 
@@ -650,7 +650,7 @@ mod tests {
     }
 
     /// The facets that are left, by their corners and those across.
-    fn facets<V: Vector>(boundary: &Boundary<V>) -> Vec<(usize, [u16; MAX_CORNERS], [u16; MAX_CORNERS])> {
+    fn facets<V: Vector>(boundary: &Boundary<V>) -> Vec<(usize, [u16; FACET_CORNERS], [u16; FACET_CORNERS])> {
         let is_left = |&i: &usize| boundary.inner[i].is_finite();
         let facet = |i: usize| (i, boundary.facets[i].corners, boundary.facets[i].across);
         (0..boundary.facets.len()).filter(is_left).map(facet).collect()

@@ -18,11 +18,11 @@ use crate::{Iterate, Status};
 /// The width of a bracket relative to the way out, below which the tolerance is enough; and the number of further
 /// support points to become so narrow. A tolerance relative to the size may be many times as wide as the way is long,
 /// for bodies that barely touch.
-const LITTLE: f64 = 1e-6;
-const MORE: usize = 24;
+const NARROW_PART: f64 = 1e-6;
+const MORE_TO_NARROW: usize = 24;
 
 /// How many of these may find nothing lower.
-const PATIENCE: usize = 4;
+const IDLE_POINTS: usize = 4;
 
 /// The part of the support points that may be added to them for the points at the ends of the way.
 const FOR_ENDS: usize = 16;
@@ -46,7 +46,7 @@ impl<S: Scalar> Closed<S> {
         if self.h - h > little {
             (self.lowered, self.h) = (time, h);
         }
-        time >= self.from + MORE || time >= self.lowered + PATIENCE
+        time >= self.from + MORE_TO_NARROW || time >= self.lowered + IDLE_POINTS
     }
 }
 
@@ -183,7 +183,7 @@ impl<V: Vector> Expansion<V> {
 
     fn close(&mut self, cores: &Cores<'_, V>, inner: V::Scalar) -> Closing {
         let (way, time) = (&self.way, cores.iterations);
-        let little = cores.rounding_along(way.u()).max(way.h.abs() * Scalar::from_f64(LITTLE));
+        let little = cores.rounding_along(way.u()).max(way.h.abs() * Scalar::from_f64(NARROW_PART));
         let is_first = self.closed.is_none();
         let closed = self.closed.get_or_insert_with(|| Closed::new(time, way.h));
         if closed.is_spent(time, way.h, little) || !(self.is_curved && way.h - inner > little) {

@@ -6,15 +6,9 @@ use num_traits::Float as _;
 use super::WayOut;
 use super::boundary::Boundary;
 use crate::SignedDistanceOptions;
-use crate::curvature::between;
+use crate::curvature::{LARGEST_TURN, SAME_PIECE, between};
 use crate::separation::cores::{Cores, Vertex};
 use crate::symmetric::{Across, Symmetric, axes_across, dot, turned_left};
-
-/// The largest tangent of an angle to turn by.
-const LARGEST: f64 = 0.5;
-
-/// Two support points are of one smooth piece if the curvature at one predicts the other but for this part.
-const FORETOLD: f64 = 0.25;
 
 /// How far past the fold a step leads, as a part of the square of the angle between both pieces.
 const LEAD: f64 = 0.1;
@@ -85,7 +79,7 @@ impl<V: Vector> Piece<V> {
     #[inline(never)]
     fn surprise(&self, vertex: &Vertex<V>) -> V::Scalar {
         let cosine = vertex.along.dot(self.n);
-        if !(cosine > V::Scalar::from_f64(LARGEST)) {
+        if !(cosine > V::Scalar::from_f64(LARGEST_TURN)) {
             return V::Scalar::infinity();
         }
         let from = vertex.point - self.point;
@@ -99,7 +93,7 @@ impl<V: Vector> Piece<V> {
 
     /// Whether a support point is of this piece.
     fn foretells(&self, vertex: &Vertex<V>) -> bool {
-        self.surprise(vertex) < V::Scalar::from_f64(FORETOLD)
+        self.surprise(vertex) < V::Scalar::from_f64(SAME_PIECE)
     }
 
     /// The unit vector where the piece's support value is to be least.
@@ -214,16 +208,16 @@ fn turned<V: Vector>(n: V, [e, f]: [V; 2], step: Across<V::Scalar>) -> Option<V>
     if !(size > Scalar::ZERO && size.is_finite()) {
         return None;
     }
-    let part = (V::Scalar::from_f64(LARGEST) / size).min(Scalar::ONE);
+    let part = (V::Scalar::from_f64(LARGEST_TURN) / size).min(Scalar::ONE);
     (n + (e * step.0 + f * step.1) * part).unit()
 }
 
 /// Newton's steps from one direction.
-const MAX_STEPS: usize = 12;
+const MAX_NEWTON_STEPS: usize = 12;
 
 /// The steps in a row that may find nothing lower: if two pieces meet, one is predicted from farther away until it is
 /// found again.
-const PATIENCE: usize = 2;
+const IDLE_STEPS: usize = 2;
 
 /// Newton's method from a direction to the bottom of its basin, on one smooth piece of the boundary or along the fold
 /// between two. `others` are vertices near by, one of which may be of the second piece. The bottom, and what was not
@@ -244,13 +238,13 @@ pub(super) fn descend<V: Vector>(
         second = Some(first.beside(cores, &boundary.vertex(other)));
     }
     let (mut failures, mut stale, mut is_added) = (0, FoldSide::Far, true);
-    for _ in 0..MAX_STEPS {
+    for _ in 0..MAX_NEWTON_STEPS {
         let u = match &second {
             Some(second) => first.step_along_fold(second, stale),
             None => first.step(),
         };
         let u = u.or_else(|| if last { first.step_to_edge(second.as_ref()) } else { None });
-        let Some(u) = u.filter(|_| cores.iterations < options.max_iterations && failures < PATIENCE) else { break };
+        let Some(u) = u.filter(|_| cores.iterations < options.max_iterations && failures < IDLE_STEPS) else { break };
         let next = WayOut::new(cores.support(u)?);
         let piece = Piece::new(cores, &next.vertex);
         // At equal heights to rounding, the slope shows the bottom: it has twice as many accurate digits as the height.

@@ -11,7 +11,7 @@ use crate::separation::cores::Cores;
 use crate::simplex::project_rarely;
 
 /// The most facets of a walk.
-const MAX_WALK: usize = 64;
+const MAX_FACETS: usize = 64;
 
 /// Points of both cores whose distance is the length of the way out.
 #[derive(Clone, Copy, Debug)]
@@ -96,7 +96,7 @@ pub(super) fn nearest_to<V: Vector>(
 /// beyond, as its coordinates say.
 fn beside<V: Vector>(boundary: &Boundary<V>, from: usize, point: V) -> usize {
     let mut facet = from;
-    for _ in 0..MAX_WALK {
+    for _ in 0..MAX_FACETS {
         let weights = project_rarely(&boundary.corner_points(facet)[..V::DIM], &|corner| point - corner).coordinates;
         let least = (1..V::DIM).fold(0, |least, i| if weights[i] < weights[least] { i } else { least });
         // NaN ends this too.

@@ -20,10 +20,10 @@ use crate::symmetric::axes_across;
 
 /// How far aside the places are, in errors of the query. An octahedron of which all corners are inside leaves zero 9
 /// errors of room; one that is larger is cut more by the edges of the bodies.
-const ASIDE: f64 = 16.0;
+const OCTAHEDRON: f64 = 16.0;
 
 /// The noise of GJK from there, in that of the query: it is to find the faces of bodies thinner than the noise.
-const NOISE: f64 = 1.0 / 256.0;
+const NOISE_ASIDE: f64 = 1.0 / 256.0;
 
 /// The most support points of one look. None of them has to end: any point of the difference will do as a corner, and
 /// any plane.
@@ -48,7 +48,7 @@ impl<V: Vector> Known<V> {
             return near.with_plane(&plane);
         }
         // A search that stalled is at a distance from zero.
-        let aside = frame.error * V::Scalar::from_f64(ASIDE) + (near.length - frame.radius).abs();
+        let aside = frame.error * V::Scalar::from_f64(OCTAHEDRON) + (near.length - frame.radius).abs();
         let [u, w] = axes_across(near.normal);
         let (mut corners, mut is_found) = ([[V::ZERO; 2]; 3], true);
         for (ends, axis) in corners.iter_mut().zip([near.normal, u, w]).take(V::DIM) {
@@ -89,7 +89,7 @@ impl<V: Vector> Known<V> {
         }
         seen.ensure_measured();
         if seen.length > self.frame.noise {
-            let (offset, noise) = (self.frame.offset - place, self.frame.noise * Scalar::from_f64(NOISE));
+            let (offset, noise) = (self.frame.offset - place, self.frame.noise * Scalar::from_f64(NOISE_ASIDE));
             let (frame, first) = (Frame { offset, noise, radius: Scalar::ZERO, ..self.frame }, seen.normal);
             run(&mut seen, pair, frame, first, max_iterations);
             seen.ensure_measured();
