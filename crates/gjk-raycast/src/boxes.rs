@@ -71,7 +71,7 @@ pub(crate) struct Zonotope {
 }
 
 /// Of the two facets that two edges span, the one on the side of zero.
-pub(crate) struct Facet {
+pub(crate) struct ZonotopeFacet {
     pub(crate) span: [usize; 2],
     /// The unit vector across it, from the second box to the first.
     pub(crate) normal: Vec3,
@@ -149,17 +149,17 @@ impl Zonotope {
 
     /// The facet of two edges, unless they are parallel.
     #[inline(always)]
-    pub(crate) fn facet(&self, span: [usize; 2]) -> Option<Facet> {
+    pub(crate) fn facet(&self, span: [usize; 2]) -> Option<ZonotopeFacet> {
         let (n, area) = self.across(span).ok()?;
         let (normal, area) = if dot(n, self.center) > 0.0 { (n, area) } else { (n.map(|x| -x), -area) };
         let (heights, level) = self.level(normal, span);
-        Some(Facet { span, normal, area, heights, level })
+        Some(ZonotopeFacet { span, normal, area, heights, level })
     }
 
     /// The place of zero's foot on a facet along each edge, if every edge but the two that span the facet leads to it
     /// all the way.
     #[inline(always)]
-    pub(crate) fn foot(&self, facet: &Facet) -> [f64; EDGES] {
+    pub(crate) fn foot(&self, facet: &ZonotopeFacet) -> [f64; EDGES] {
         let [i, j] = facet.span;
         let others = &OTHERS[i][j];
         let mut weights = core::array::from_fn(|k| -Float::copysign(others[k], facet.heights[k]));
@@ -172,7 +172,7 @@ impl Zonotope {
 
     /// What leads to zero's foot on a facet from where the centre and some weights lead.
     #[inline(always)]
-    fn rest(&self, facet: &Facet, weights: &[f64; EDGES]) -> Vec3 {
+    fn rest(&self, facet: &ZonotopeFacet, weights: &[f64; EDGES]) -> Vec3 {
         core::array::from_fn(|x| {
             let rest = facet.normal[x] * facet.level - self.center[x];
             self.edges[x].iter().zip(weights).fold(rest, |rest, (edge, weight)| rest - edge * weight)
@@ -276,7 +276,7 @@ impl Zonotope {
     /// The highest facet of two boxes. `None` if some edges are so nearly parallel that their facet, which is not
     /// computed, may be the highest.
     #[inline(always)]
-    pub(crate) fn highest(&self) -> Option<Facet> {
+    pub(crate) fn highest(&self) -> Option<ZonotopeFacet> {
         let axes = SeparatingAxes::new(self);
         let squared = [1.0, 1.0, 1.0, self.squared[3], self.squared[4], self.squared[5]];
         // Squares with the signs of the levels are compared, so that no root is needed.
@@ -468,7 +468,7 @@ impl Zonotope {
     /// Let `n` be its normal and `z` a point in the middle of it. The support value of the zonotope along the true
     /// normal `n + δ` is at least that of `z`, `n·z + δ·z`, in which only the part of `z` across `n` counts: both are
     /// unit vectors.
-    fn error(&self, facet: &Facet, flat: f64) -> f64 {
+    fn error(&self, facet: &ZonotopeFacet, flat: f64) -> f64 {
         let n = facet.normal;
         let magnitude = |v: Vec3| (n[0] * v[0]).abs() + (n[1] * v[1]).abs() + (n[2] * v[2]).abs();
         let (mut middle, mut total) = (self.center, magnitude(self.center));
@@ -489,7 +489,7 @@ impl Zonotope {
     /// If others do, the facet is no parallelogram. Lifted to heights `wₖ`, its lower side becomes a roof of
     /// parallelograms: that of the edges `p`, `q` is below `φ·x`, with `φ·e_p = w_p` and `φ·e_q = w_q`, and there every
     /// other edge leads to where it is lower, the sign of `φ·eₖ − wₖ`. One of them has the foot.
-    fn foot_on_polygon<V: Vector>(&self, facet: &Facet, flat: f64) -> ([f64; EDGES], f64) {
+    fn foot_on_polygon<V: Vector>(&self, facet: &ZonotopeFacet, flat: f64) -> ([f64; EDGES], f64) {
         let outside = |[p, q]: [f64; 2]| p.abs().max(q.abs()) - 1.0;
         let mut weights = facet.heights.map(|height| -height.signum());
         let (mut plane, mut count) = ([0; EDGES], 0);
@@ -731,7 +731,9 @@ mod tests {
             let minor = |i: usize, j: usize| i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i]);
             let known = [minor(1, 2), minor(2, 0), minor(0, 1)].map(|x| x as f64);
             assert_eq!(exact_cross(&e, &f), known);
-            let Some(Facet { normal, area, .. }) = needles(e, f).facet([0, 3]) else { panic!("they span a plane") };
+            let Some(ZonotopeFacet { normal, area, .. }) = needles(e, f).facet([0, 3]) else {
+                panic!("they span a plane")
+            };
             let off = |i: usize| (normal[i] * length(known).copysign(area) - known[i]).abs();
             assert!((0..3).all(|i| off(i) <= 4.0 * f64::EPSILON * length(known)));
         }

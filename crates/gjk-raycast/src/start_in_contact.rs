@@ -171,7 +171,7 @@ impl<V: Vector> StartingPair<'_, V> {
 
     /// The line of the plane across a direction that keeps the shapes farthest apart, found when they have moved for
     /// some time.
-    fn line(&self, direction: V, time: V::Scalar) -> Option<Line<V>> {
+    fn line(&self, direction: V, time: V::Scalar) -> Option<GapAlong<V>> {
         let plane = HalfSpace::new(direction, V::Scalar::ZERO).ok()?.plane();
         let [core_a, core_b] = [self.a.core(), self.b.core()];
         let point_a = self.a.core_support(-direction, &mut Hint::new());
@@ -181,14 +181,14 @@ impl<V: Vector> StartingPair<'_, V> {
         let gap = plane.height(terms, error, core_a.radius + core_b.radius).least();
         let [velocity_a, velocity_b] = self.velocities;
         let closing = plane.sinking([velocity_a, -velocity_b]).most();
-        Some(Line { gap, closing, normal: direction, time })
+        Some(GapAlong { gap, closing, normal: direction, time })
     }
 }
 
 /// A lower bound of the signed distance of two shapes, by a plane between them: no more than the `gap` at the start,
 /// and `closing` less in each unit of time.
 #[derive(Clone, Copy)]
-struct Line<V: Vector> {
+struct GapAlong<V: Vector> {
     gap: V::Scalar,
     closing: V::Scalar,
     normal: V,
@@ -196,7 +196,7 @@ struct Line<V: Vector> {
     time: V::Scalar,
 }
 
-impl<V: Vector> Line<V> {
+impl<V: Vector> GapAlong<V> {
     /// The bound at a time.
     fn at(&self, time: V::Scalar) -> V::Scalar {
         let way = self.closing * time;

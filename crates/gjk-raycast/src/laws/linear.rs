@@ -121,7 +121,7 @@ pub fn linear_cast_judged<V: Vector>(
 }
 
 /// The signed distance of the bodies at a time.
-type Later<'f, V> = &'f dyn Fn(<V as Vector>::Scalar) -> Option<SignedDistance<V>>;
+type AtTime<'f, V> = &'f dyn Fn(<V as Vector>::Scalar) -> Option<SignedDistance<V>>;
 
 /// Bodies that may begin in contact get deeper, or do not.
 ///
@@ -131,7 +131,7 @@ fn deeper<V: Vector>(
     told: &[Told],
     start: &SignedDistance<V>,
     scale: &Scale,
-    (at, relative): (Later<'_, V>, Numbers),
+    (at, relative): (AtTime<'_, V>, Numbers),
     beyond: super::cast::Beyond<'_>,
     report: &mut Report,
 ) {

@@ -19,7 +19,7 @@ const WIDTH_OF_DISTANCES: f64 = 6.0;
 const POINTS: f64 = 64.0;
 
 /// What an answer says of the signed distance.
-struct Known {
+struct Answered {
     query: &'static str,
     how: &'static str,
     lower: f64,
@@ -85,7 +85,7 @@ struct Laws<'p> {
     scale: Scale,
     planes: PairPlanes<'p>,
     report: Report,
-    known: Vec<Known>,
+    known: Vec<Answered>,
     meetings: Vec<Meeting>,
     /// Directions of planes to try.
     normals: Vec<Numbers>,
@@ -107,7 +107,7 @@ impl Laws<'_> {
         });
         // Where the bodies may overlap, nothing is said of how deep.
         let known = if lower > 0.0 { lower } else { f64::NEG_INFINITY };
-        self.known.push(Known { query: "distance", how, lower: known, upper });
+        self.known.push(Answered { query: "distance", how, lower: known, upper });
         if is_converged && !how.starts_with("lean") || lower > 0.0 {
             self.meetings.push(Meeting { query: "distance", how, overlap: answer.overlap });
         }
@@ -133,7 +133,7 @@ impl Laws<'_> {
         self.report.claim((Law::Bound, "signed_distance"), is_ordered, || {
             format!("{how}, the signed distance is not within its own bounds, or not as the flag says: {answer:?}")
         });
-        self.known.push(Known { query: "signed_distance", how, lower, upper });
+        self.known.push(Answered { query: "signed_distance", how, lower, upper });
         if lower > 0.0 || upper < 0.0 {
             self.meetings.push(Meeting { query: "signed_distance", how, overlap: answer.overlap });
         }

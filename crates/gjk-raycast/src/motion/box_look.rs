@@ -14,7 +14,7 @@ use num_traits::Float;
 use super::instant::{Instant, Limits, NEAR_IN_MOTION};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
-use crate::boxes::{EDGES, Facet, Zonotope};
+use crate::boxes::{EDGES, Zonotope, ZonotopeFacet};
 use crate::double::{Vec3, array, dot, vector};
 use crate::gjk::rounding;
 use crate::separation::{Uncertainty, slack};
@@ -43,7 +43,7 @@ const FROM_NEAR: f64 = 0.5;
 
 /// The highest facet and zero's foot on it, in a unit near the size of both boxes.
 struct BoxFacet {
-    facet: Facet,
+    facet: ZonotopeFacet,
     /// The distance of zero's foot from the nearest side of the facet; negative if it is outside.
     room: f64,
     /// The point of the second box, relative to its centre, that zero's foot is the difference of; if the foot is
@@ -146,7 +146,7 @@ impl<V: Vector> MovingPair<'_, V> {
 
 impl BoxFacet {
     #[inline(always)]
-    fn new(boxes: &Zonotope, facet: Facet) -> Self {
+    fn new(boxes: &Zonotope, facet: ZonotopeFacet) -> Self {
         let (weights, [i, j]) = (boxes.foot(&facet), facet.span);
         let room = |i: usize, j: usize| (1.0 - weights[i].abs()) / boxes.length(j);
         let room = room(i, j).min(room(j, i)) * facet.area.abs();

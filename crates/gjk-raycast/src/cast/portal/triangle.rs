@@ -57,7 +57,7 @@ pub(super) fn triangle<V: Vector>(
             Err(Stop::InDoubt)
         };
     }
-    let mut planes = Planes { frame, alpha: best.alpha, best, tilt };
+    let mut planes = NewestPlanes { frame, alpha: best.alpha, best, tilt };
     let mut q = planes.opposite(bracket, &p)?;
     let mut portal = if tilt < Scalar::ONE { mixed(frame, &p, &q) } else { None };
     if portal.is_none() {
@@ -82,7 +82,7 @@ pub(super) fn triangle<V: Vector>(
 }
 
 /// The planes of the search: the last, the best, and how far the next one is tilted towards the line.
-struct Planes<'f, V: Vector> {
+struct NewestPlanes<'f, V: Vector> {
     frame: &'f RayFrame<V>,
     alpha: Alpha<V::Scalar>,
     best: BestPlane<V>,
@@ -98,7 +98,7 @@ struct Triangle<V: Vector> {
     turn: V::Scalar,
 }
 
-impl<V: Vector> Planes<'_, V> {
+impl<V: Vector> NewestPlanes<'_, V> {
     /// The support point of a plane, which becomes the last one.
     #[inline(always)]
     fn support(&mut self, bracket: &mut Bracket<'_, V>, plane: RayPlane<V::Scalar>) -> Result<RayPoint<V>, Stop<V>> {
