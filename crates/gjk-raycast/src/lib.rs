@@ -79,7 +79,8 @@
 //!   `Linkage::par_paths`, which use all threads.
 //! - `simd`: [`ray_entries_into`] uses the widest vector instructions of the processor, found at run time by pulp.
 //!   The answers are the same.
-//! - `paper`: the sub-algorithms of the papers beside the default, for comparison: [`SubAlgorithm`].
+//! - `paper`: Algorithms 1 to 3 as the paper prints them (module `paper`), and its sub-algorithm and two others beside
+//!   the default ([`SubAlgorithm`]).
 //! - `hull`, `mint`, `bytemuck`, `approx`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: the
 //!   features of [`convex_support`] with these names, for its shapes.
 //! - `laws`: what answers say of themselves, as laws that hold for any shapes; with `proptest` as property tests too.
@@ -154,6 +155,8 @@ mod motion;
 mod observer;
 mod options;
 mod outcome;
+#[cfg(feature = "paper")]
+pub mod paper;
 mod ray;
 mod ray_cast;
 mod ray_casts;

@@ -40,7 +40,8 @@ pub struct Iterate<'a, V: Vector> {
     pub w: V,
     /// The factor, a power of two, that turns the vectors above into lengths of the world.
     pub scale: V::Scalar,
-    /// The lower bound: of the distance of the cores, or of the hit parameter λ.
+    /// The lower bound: of the distance of the cores; or of the hit parameter λ, by the support points so far. What
+    /// rounding does to it is not counted, as it is in an answer's bounds.
     pub lower: V::Scalar,
     /// The upper bound of the same value.
     pub upper: V::Scalar,

@@ -11,7 +11,7 @@ use convex_support::{
 };
 use gjk_raycast::{
     CastMethod, Distance, DistanceOptions, IntersectOptions, Ray, RayCastOptions, Status, SubAlgorithm, distance,
-    distance_with, intersects, iterative_ray_cast_with, ray_cast, ray_cast_with,
+    distance_with, intersects, iterative_ray_cast_with, paper, ray_cast, ray_cast_with,
 };
 use proptest::prelude::*;
 
@@ -116,6 +116,84 @@ proptest! {
             );
         }
     }
+}
+
+proptest! {
+    #![proptest_config(convex_support::laws::config(200))]
+
+    /// The printed algorithms and the certified ones agree, to the tolerance of the printed ones.
+    #[test]
+    fn the_printed_algorithms_agree(kind in 0_usize..7, turn in rotation(), from in vector(1.0), aim in vector(0.5)) {
+        prop_assume!(from.length() > 0.1);
+        let shape = shape(kind, turn);
+        let ray = Ray { source: from.normalize() * 4.0, direction: aim - from.normalize() * 4.0 };
+        let certain = ray_cast(&shape, ray, RayCastOptions::default()).expect("finite").outcome;
+        let first = paper::iterative_ray_cast(|x| nearest(&shape, x), ray, 1e-7, 10_000);
+        let mut casts = vec![first];
+        for sub_algorithm in [SubAlgorithm::Johnson, SubAlgorithm::SignedVolumes] {
+            let mut seen = Vec::new();
+            casts.push(paper::gjk_ray_cast(&shape, ray, 1e-13, 10_000, &sub_algorithm, |i| seen.push(i.lower)));
+            prop_assert!(seen.is_sorted(), "λ only grows: {:?}", seen);
+
+            let x = convex_support::Point::new(ray.source).expect("finite");
+            let difference = convex_support::Difference::new(&x, &shape);
+            let printed = paper::gjk_distance(&difference, 1e-6, 10_000, &sub_algorithm, |i| seen.push(i.gap()));
+            let apart = (ray.source - nearest(&shape, ray.source)).length();
+            prop_assert!(printed.is_close_enough && (printed.v.length() - apart).abs() <= 1e-6, "{:?}", printed);
+        }
+        for cast in casts {
+            let Some(is_hit) = cast.hit else { continue };
+            match certain.hit() {
+                Some(hit) => {
+                    let slope = hit.normal.map_or(1.0, |n| -n.dot(ray.direction.normalize()));
+                    if slope > 0.01 {
+                        prop_assert!(is_hit && (cast.lambda - hit.lambda).abs() < 1e-6 / slope, "{:?} {:?}", cast, hit);
+                        prop_assert!((cast.x - ray.source - ray.direction * cast.lambda).length() < 1e-12);
+                    }
+                }
+                // A ray that passes within the tolerance is a hit of the printed algorithms.
+                None => prop_assert!(!is_hit || (cast.x - nearest(&shape, cast.x)).length() < 1e-5, "{:?}", cast),
+            }
+        }
+    }
+}
+
+/// "For a sphere, the average number of iterations is roughly proportional to −log ε", with `‖v‖² ≤ ε·max‖x − p‖²` for
+/// the condition: four for each decade. (The paper counts eight at 10⁻⁶, for rays of which it says no more than that they
+/// are random; these take 18.6 there, and eight at 3·10⁻⁴.)
+#[test]
+fn iterations_of_the_printed_algorithm_grow_as_minus_log_epsilon() {
+    let sphere = Bare(|direction: DVec3| direction.normalize());
+    let mean = |decades: i32| {
+        let steps = directions(200).enumerate().map(|(i, d)| {
+            let (source, aim) = (DVec3::from_array(d) * 3.0, DVec3::new(d[1], d[2], d[0]) * 0.004 * i as f64);
+            let (ray, epsilon) = (Ray { source, direction: aim - source }, 10.0_f64.powi(-decades));
+            let cast = paper::gjk_ray_cast(&sphere, ray, epsilon, 100, &SubAlgorithm::Johnson, |_| {});
+            assert!(cast.hit.is_some(), "{decades} {i}: {cast:?}");
+            cast.iterations as f64
+        });
+        steps.sum::<f64>() / 200.0
+    };
+    let means = [4, 6, 8, 10, 12].map(mean);
+    for pair in means.windows(2) {
+        let per_decade = 0.5 * (pair[1] - pair[0]);
+        assert!((3.5..4.5).contains(&per_decade), "{means:?}");
+    }
+}
+
+/// Nothing loops or panics on numbers that are not finite, and none of them is a hit.
+#[test]
+fn the_printed_algorithms_end_on_odd_numbers() {
+    let sphere = Bare(|direction: DVec3| direction.normalize());
+    for source in [DVec3::NAN, DVec3::new(f64::INFINITY, 0.0, 0.0)] {
+        let ray = Ray { source, direction: DVec3::X };
+        let cast = paper::gjk_ray_cast(&sphere, ray, 1e-6, 100, &SubAlgorithm::Johnson, |_| {});
+        assert!(cast.hit != Some(true) && cast.iterations <= 100, "{cast:?}");
+        let cast = paper::iterative_ray_cast(|x| x.normalize(), ray, 1e-6, 100);
+        assert!(cast.hit != Some(true) && cast.iterations <= 100, "{cast:?}");
+    }
+    let found = paper::gjk_distance(&Bare(|_| DVec3::NAN), 1e-6, 100, &SubAlgorithm::Johnson, |_| {});
+    assert!(!found.is_close_enough && found.iterations <= 100, "{found:?}");
 }
 
 /// A support map that is nothing but a function.

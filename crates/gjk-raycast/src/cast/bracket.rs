@@ -6,10 +6,13 @@
 //! a ray is in it, at the latest, where it meets a point made of support points. The searches choose where to look,
 //! and may be wrong: their results count only as they are measured here.
 
+use alloc::boxed::Box;
+
 use convex_support::{Scalar, Vector};
 use num_traits::Float;
 
 use super::line::{CastRay, Line, LocalRay};
+use super::watched::Watched;
 use super::{RayContact, Stop};
 use crate::body::{CastBody, Measures, PointPair};
 use crate::observer::Observer;
@@ -87,6 +90,8 @@ pub(super) struct Bracket<'a, V: Vector> {
     /// The unit of length.
     pub(super) scale: V::Scalar,
     observer: Observer<'a, V>,
+    /// The bracket that the observer sees, if there is one.
+    watched: Option<Box<Watched<V>>>,
     /// The number of support points taken.
     pub(super) iterations: usize,
     /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative
@@ -159,6 +164,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
             is_curved,
             scale,
             observer: observer.by_ref(),
+            watched: None,
             iterations: 0,
             chord: (squared, half_chord),
             low: PlaneCrossing { bound: Bound::exact(ray.start.max(-half_chord)), slope: zero },
@@ -316,21 +322,25 @@ impl<'a, V: Vector> Bracket<'a, V> {
         let (point, witness) = self.body.support(n);
         self.iterations += 1;
         if !self.observer.is_none() {
-            self.show(point, v, simplex);
+            self.show(n, point, v, simplex);
         }
         if point.is_finite() { Ok((point, witness)) } else { Err(Stop::Exhausted(Status::Stalled)) }
     }
 
-    /// Shows the observer a support point, beside `v` and the points of its simplex.
+    /// Shows the observer the support point along `n`, beside `v` and the points of its simplex.
     #[cold]
     #[inline(never)]
-    fn show(&mut self, point: V, v: V, simplex: &[V]) {
+    fn show(&mut self, n: V, point: V, v: V, simplex: &[V]) {
         let x = self.x();
+        let (line, radius) = (self.ray.line, self.radius);
+        let watched = self.watched.get_or_insert_with(|| Box::new(Watched::new(line)));
+        watched.count(n, point, radius);
+        let (low, high) = watched.narrow(self.low.bound.at, self.high.at);
         let mut seen = [V::ZERO; MAX_POINTS];
         for (s, p) in seen.iter_mut().zip(simplex) {
             *s = x - *p;
         }
-        let (lower, upper) = (self.ray.lambda(self.low()), self.ray.lambda(self.high.at));
+        let (lower, upper) = (self.ray.lambda(low), self.ray.lambda(high));
         let simplex = &seen[..simplex.len().min(MAX_POINTS)];
         let iteration = self.iterations - 1;
         self.observer.show(|| Iterate { iteration, simplex, v, w: x - point, scale: self.scale, lower, upper });

@@ -10,6 +10,7 @@ mod outline;
 mod portal;
 mod ray_frame;
 mod start;
+mod watched;
 
 use convex_support::{Scalar, Vector, compiled_table};
 use num_traits::Float as _;
