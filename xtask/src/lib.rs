@@ -9,6 +9,7 @@
 
 pub mod bits;
 mod claims;
+pub mod columns;
 pub mod docs;
 mod draw;
 pub mod engine;

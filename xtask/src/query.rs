@@ -1,4 +1,4 @@
-//! `cargo xtask query FILE…`: one answer per line, in order, in constant memory.
+//! `cargo xtask query FILE…`: one answer per line, in order, in constant memory; lines of JSON, or rows of a table.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
@@ -8,10 +8,12 @@ use std::process::ExitCode;
 use clap::Args;
 use rayon::prelude::*;
 
+use crate::columns::{Bound, Columns, Template};
 use crate::engine;
 use crate::mesh::{Access, Meshes};
 use crate::output;
 use crate::wire::answer::{Answer, Line};
+use crate::wire::error::Problem;
 use crate::wire::json;
 
 /// Lines are read as long as they are there already, and answered together: at most about this much of them at once.
@@ -33,23 +35,43 @@ pub struct Choice {
     /// Write each query as it is, with its `answer` and the `certificate` that proves it, for `cargo xtask prove`.
     #[arg(long)]
     certify: bool,
+    /// Read CSV, whose first row has the names of its columns: the query in which `$name` is the cell of a column, as in
+    /// `{"query":"distance","a":{"type":"ball","radius":$r},"b":{"type":"point","at":[$x,$y,$z]}}`.
+    #[arg(long, value_name = "QUERY", value_parser = Template::parse, conflicts_with = "certify")]
+    template: Option<Template>,
+    /// Write CSV with these fields of the answers, as in `id,distance,lower,point_a.0,error`.
+    #[arg(long, value_name = "FIELDS", value_delimiter = ',', conflicts_with = "certify")]
+    columns: Vec<String>,
 }
 
 /// Answers the files to standard output.
 #[must_use]
-pub fn run(Choice { files, meshes, first_line, certify }: &Choice) -> ExitCode {
-    let write = if *certify { certified_line } else { answer_line };
+pub fn run(Choice { files, meshes, first_line, certify, template, columns }: &Choice) -> ExitCode {
+    let columns = (!columns.is_empty()).then(|| Columns::new(columns));
+    let row = |numbered: &Numbered, meshes: &Meshes| answer_row(numbered, meshes, columns.as_ref());
+    let write: &Writer<'_> = if *certify { &certified_line } else { &row };
+    let door = Door { template: template.as_ref(), write };
     let mut output = BufWriter::new(io::stdout().lock());
-    let (mut any_error, mut any_failure) = (false, false);
+    if let Some(Err(why)) = columns.as_ref().map(|columns| output.write_all(columns.header().as_bytes())) {
+        return output::failed("cannot write the answers", &why);
+    }
+    let (mut any_error, mut any_failure, mut any_answer) = (false, false, false);
     for file in files {
-        match answer_file(file, meshes, Lines { read: first_line - 1 }, write, &mut output) {
-            Ok(Tally { errors, .. }) => any_error |= errors > 0,
+        match answer_file(file, meshes, Lines { read: first_line - 1 }, door, &mut output) {
+            Ok(Tally { errors, answers }) => {
+                any_error |= errors > 0;
+                any_answer |= answers > 0;
+            }
             Err(Failure::Output(why)) => return output::failed("cannot write the answers", &why),
             Err(Failure::Input(why)) => {
                 any_failure = true;
                 complain(&format!("cannot read {}: {why}", file.display()));
             }
         }
+    }
+    for missing in columns.iter().flat_map(Columns::missing).filter(|_| any_answer) {
+        any_failure = true;
+        complain(&format!("no answer has the field `{missing}`; xtask/README.md names the fields of each query"));
     }
     match (any_failure, any_error) {
         (true, _) => ExitCode::from(2),
@@ -81,15 +103,15 @@ fn answer_file(
     file: &Path,
     access: &Access,
     lines: Lines,
-    write: Writer,
+    door: Door<'_>,
     output: &mut impl Write,
 ) -> Result<Tally, Failure> {
     let meshes = |folder| Meshes::relative_to(folder).with_access(access.clone());
     if file == Path::new("-") {
-        return answer_lines(io::stdin().lock(), lines, &meshes(Path::new("")), write, output);
+        return answer_lines(io::stdin().lock(), lines, &meshes(Path::new("")), door, output);
     }
     let folder = file.parent().unwrap_or(Path::new(""));
-    answer_lines(File::open(file).map_err(Failure::Input)?, lines, &meshes(folder), write, output)
+    answer_lines(File::open(file).map_err(Failure::Input)?, lines, &meshes(folder), door, output)
 }
 
 /// Answers every line of `input`; `lines` says which lines came before.
@@ -99,10 +121,23 @@ fn answer_lines(
     input: impl Read,
     mut lines: Lines,
     meshes: &Meshes,
-    write: Writer,
+    Door { template, write }: Door<'_>,
     output: &mut impl Write,
 ) -> Result<Tally, Failure> {
     let mut input = BufReader::with_capacity(BATCH_BYTES, input);
+    let table = match template {
+        Some(template) => Some(lines.table(template, &mut input).map_err(Failure::Input)?),
+        None => None,
+    };
+    let filled = |mut numbered: Numbered| {
+        if let Some(table) = &table {
+            match table.fill(&numbered.text) {
+                Ok(text) => numbered.text = text,
+                Err(problem) => numbered.problem = Some(problem),
+            }
+        }
+        numbered
+    };
     let mut tally = Tally::default();
     let mut more = true;
     while more {
@@ -113,7 +148,7 @@ fn answer_lines(
                 break;
             }
         }
-        let answers: Vec<(bool, Vec<u8>)> = batch.par_iter().map(|line| write(line, meshes)).collect();
+        let answers: Vec<(bool, Vec<u8>)> = batch.into_par_iter().map(|line| write(&filled(line), meshes)).collect();
         for (answered, text) in answers {
             output.write_all(&text).map_err(Failure::Output)?;
             if answered { tally.answers += 1 } else { tally.errors += 1 }
@@ -127,6 +162,15 @@ fn answer_lines(
 struct Numbered {
     line: u64,
     text: Vec<u8>,
+    /// What is wrong with it as a row of a table.
+    problem: Option<Problem>,
+}
+
+/// How lines are read and answered: as rows of a table, for which there is a template, or as they are.
+#[derive(Clone, Copy)]
+struct Door<'d> {
+    template: Option<&'d Template>,
+    write: &'d Writer<'d>,
 }
 
 /// Counts the lines of a file.
@@ -147,26 +191,34 @@ impl Lines {
         }
         text.truncate(text.trim_ascii_end().len());
         if !text.is_empty() && !text.starts_with(b"#") {
-            batch.push(Numbered { line: self.read, text });
+            batch.push(Numbered { line: self.read, text, problem: None });
         }
         Ok(true)
+    }
+
+    /// Reads the first row of a table.
+    fn table<'t>(&mut self, template: &'t Template, input: &mut impl BufRead) -> io::Result<Bound<'t>> {
+        let mut first = Vec::new();
+        while first.is_empty() && self.next(input, &mut first)? {}
+        let header = first.pop().map_or_else(Vec::new, |header| header.text);
+        template.bind(&String::from_utf8_lossy(&header)).map_err(io::Error::other)
     }
 }
 
 /// The line of output for one line of input.
 #[must_use]
 pub fn answer(text: &[u8], meshes: &Meshes) -> Vec<u8> {
-    answer_line(&Numbered { line: 1, text: text.to_vec() }, meshes).1
+    answer_row(&Numbered { line: 1, text: text.to_vec(), problem: None }, meshes, None).1
 }
 
 /// How a line of input is answered: the line of output, and whether it is an answer.
-type Writer = fn(&Numbered, &Meshes) -> (bool, Vec<u8>);
+type Writer<'w> = dyn Fn(&Numbered, &Meshes) -> (bool, Vec<u8>) + Sync + 'w;
 
 /// The query as it is written, with its answer and certificate; or what is wrong with it.
 fn certified_line(numbered: &Numbered, meshes: &Meshes) -> (bool, Vec<u8>) {
     let asked = json::object(&numbered.text).and_then(|object| engine::question(&object, meshes));
     let Ok((answer, certificate)) = asked.and_then(|question| question.ask_with_certificate()) else {
-        return answer_line(numbered, meshes);
+        return answer_row(numbered, meshes, None);
     };
     let json = |answer: &Answer| serde_json::to_string(answer).unwrap_or_default();
     let mut text = numbered.text.clone();
@@ -183,15 +235,26 @@ fn certified_line(numbered: &Numbered, meshes: &Meshes) -> (bool, Vec<u8>) {
 /// The line with its answer and certificate; `None` where it has no answer.
 #[must_use]
 pub fn certified(text: &[u8], meshes: &Meshes) -> Option<Vec<u8>> {
-    let (is_answer, line) = certified_line(&Numbered { line: 1, text: text.to_vec() }, meshes);
+    let (is_answer, line) = certified_line(&Numbered { line: 1, text: text.to_vec(), problem: None }, meshes);
     is_answer.then_some(line)
 }
 
-/// The line of output for a line of input, and whether it is an answer.
-fn answer_line(Numbered { line, text }: &Numbered, meshes: &Meshes) -> (bool, Vec<u8>) {
-    let asked = json::object(text).and_then(|object| engine::question(&object, meshes));
-    let (id, outcome) = (json::id_of(text), asked.and_then(|question| question.ask()));
+/// The line of output for a line of input, with these columns or as JSON, and whether it is an answer.
+fn answer_row(
+    Numbered { line, text, problem }: &Numbered,
+    meshes: &Meshes,
+    columns: Option<&Columns>,
+) -> (bool, Vec<u8>) {
+    let read = problem.clone().map_or_else(|| json::object(text), Err);
+    let outcome = read.and_then(|object| engine::question(&object, meshes)).and_then(|question| question.ask());
+    let id = if problem.is_none() { json::id_of(text) } else { None };
     let answered = outcome.is_ok();
+    if let Some(columns) = columns {
+        let text =
+            |id: &serde_json::value::RawValue| serde_json::from_str(id.get()).unwrap_or_else(|_| id.get().to_owned());
+        let id = id.as_deref().map_or_else(|| line.to_string(), text);
+        return (answered, columns.row(&id, &outcome));
+    }
     // Writing to memory fails only for values that are no JSON, and there are none in a `Line`.
     let mut text = serde_json::to_vec(&Line { id, line: *line, outcome }).unwrap_or_default();
     text.push(b'\n');
@@ -202,10 +265,32 @@ fn answer_line(Numbered { line, text }: &Numbered, meshes: &Meshes) -> (bool, Ve
 mod tests {
     use super::*;
 
+    const AS_JSON: Door<'_> = Door { template: None, write: &|numbered, meshes| answer_row(numbered, meshes, None) };
+
+    /// A table is answered row by row: good rows, bad ones, and those whose query is none.
+    #[test]
+    fn a_table_is_answered_in_columns() {
+        let query =
+            r#"{"id":"$name","query":"distance","a":{"type":"ball","radius":$r},"b":{"type":"point","at":[$x,0,0]}}"#;
+        let template = Template::parse(query).expect("a template");
+        let columns = Columns::new(&["id", "distance", "normal.0", "error"].map(str::to_owned));
+        let write = |numbered: &Numbered, meshes: &Meshes| answer_row(numbered, meshes, Some(&columns));
+        let door = Door { template: Some(&template), write: &write };
+        let table = b"\xEF\xBB\xBFname,r,x\r\n\"a, b\",1,3\r\nsunk,1,0.5\n\nbad,1\nnegative,-1,3\n";
+        let mut output = Vec::new();
+        let tally = answer_lines(&table[..], Lines { read: 0 }, &Meshes::relative_to(""), door, &mut output);
+        assert_eq!(tally.expect("in memory"), Tally { answers: 2, errors: 2 });
+        let rows: Vec<String> = String::from_utf8_lossy(&output).lines().map(str::to_owned).collect();
+        assert_eq!(rows[..2], ["\"a, b\",2.0,-1.0,", "sunk,0.0,,"]);
+        assert_eq!(rows[2], "5,,,\"the row has 2 cells, and the first row 3\"");
+        assert!(rows[3].starts_with("negative,,,") && rows[3].contains("radius"), "{}", rows[3]);
+        assert_eq!(rows.len(), 4);
+    }
+
     fn answers(input: &[u8], first_line: u64) -> Vec<u8> {
         let mut output = Vec::new();
         let lines = Lines { read: first_line - 1 };
-        answer_lines(input, lines, &Meshes::relative_to(""), answer_line, &mut output).expect("in memory");
+        answer_lines(input, lines, &Meshes::relative_to(""), AS_JSON, &mut output).expect("in memory");
         output
     }
 

@@ -67,6 +67,7 @@ impl<V: Vector> Aabb<V> {
 /// );
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
+#[doc(alias("aabb", "extents"))]
 #[must_use]
 pub fn bounding_box<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
     Aabb {

@@ -1,6 +1,8 @@
 //! Convex shapes as support maps, for collision detection, ray casting and motion planning: 2D and 3D, `f32` and `f64`,
 //! on [glam](https://docs.rs/glam)'s vectors.
 //!
+#![doc = include_str!("../doc/support.svg")]
+//!
 //! A convex shape is described by one function, its [support mapping](SupportMap): which of its points lies farthest
 //! along a given direction. This function is enough for ray casts, distances and continuous collision detection. It
 //! also composes: the Minkowski sum, the difference (the configuration space obstacle), the hull, a pose, an affine
@@ -54,6 +56,9 @@
 //!   which generates shapes and poses of wild aspect and scale.
 
 #![no_std]
+#![forbid(unsafe_code)]
+// On docs.rs, each item says which feature it needs.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 #[cfg(not(any(feature = "f64", feature = "glam-032")))]

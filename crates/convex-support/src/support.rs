@@ -66,6 +66,7 @@ use crate::{
     message = "`{Self}` is not a convex shape",
     note = "implement `SupportMap` for it: only `support` is required"
 )]
+#[doc(alias("support_function", "support_mapping"))]
 pub trait SupportMap {
     /// The space the set lives in: dimension and precision.
     type Vector: Vector;

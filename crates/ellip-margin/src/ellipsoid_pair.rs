@@ -31,6 +31,7 @@ use crate::{
 /// assert!(distance.hessian().along(away, DVec3::ZERO).abs() < 1e-14);
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
+#[doc(alias("ellipsoid_distance", "clearance"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EllipsoidPair<'a, V: Vector> {
     first: &'a Ellipsoid<V>,
@@ -136,6 +137,7 @@ impl<'a, V: Vector> EllipsoidPair<'a, V> {
     /// );
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
+    #[doc(alias("growth_distance", "perram_wertheim", "common_scaling"))]
     pub fn scaling(&self) -> Answer<'a, V, Scaling<V>> {
         self.answer(scaling(self.first, self.second, self.options))
     }

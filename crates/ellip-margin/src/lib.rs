@@ -1,6 +1,8 @@
 //! The free margin of ellipsoids: how far a robot's link is from an obstacle, and in which direction this distance
 //! grows; in 2D and 3D, `f32` and `f64`, on [glam](https://docs.rs/glam)'s vectors.
 //!
+#![doc = include_str!("../doc/margin.svg")]
+//!
 //! The margin `m` of E₁ about E₂ says how much E₁ has to grow about its own centre to touch E₂: by the factor √(1 +
 //! m) (Rimon and Boyd, *Obstacle collision detection using best ellipsoid fit*, 1997). It is positive where they are
 //! disjoint, 0 where they touch, negative where they overlap, and continuously differentiable throughout. It is −1 if
@@ -57,6 +59,9 @@
 //!   the same.
 
 #![no_std]
+#![forbid(unsafe_code)]
+// On docs.rs, each item says which feature it needs.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(clippy::needless_range_loop, reason = "the formulas of this crate index several small arrays at once")]
 #![allow(clippy::doc_markdown, reason = "formulas are not code")]

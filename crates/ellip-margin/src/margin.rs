@@ -64,6 +64,7 @@ pub struct Margin<V: Vector> {
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 ///
+#[doc(alias("clearance", "barrier_function"))]
 #[doc = include_str!("../doc/margin.svg")]
 #[inline]
 pub fn free_margin<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginOptions) -> Margin<V> {

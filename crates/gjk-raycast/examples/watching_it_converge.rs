@@ -1,4 +1,5 @@
-//! What does a query do, step by step? An observer sees every iterate, and the bracket close.
+//! What does a query do, step by step? An observer sees every iterate, and the bracket close: of a distance, and of a
+//! ray cast by GJK. The default cast closes its bracket at its end only.
 //!
 //! `cargo run -p gjk-raycast --example watching_it_converge`
 
@@ -6,7 +7,7 @@
 
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{Cylinder, Ellipsoid, Posed};
-use gjk_raycast::{DistanceOptions, Ray, RayCastOptions, Status, distance_with, ray_cast_with};
+use gjk_raycast::{CastMethod, DistanceOptions, Ray, RayCastOptions, Status, distance_with, ray_cast_with};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pillar = Posed::new(Cylinder::new(2.0, 0.5)?, DQuat::from_rotation_x(0.3), DVec3::new(2.0, 0.0, 0.0))?;
@@ -30,7 +31,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     println!("ray cast    vertices             at least              at most");
     let ray = Ray { source: DVec3::new(-3.0, 0.1, 0.1), direction: DVec3::X };
-    let answer = ray_cast_with(&stone, ray, RayCastOptions::default(), |iterate| {
+    let options = RayCastOptions::new().with_method(CastMethod::Gjk);
+    let answer = ray_cast_with(&stone, ray, options, |iterate| {
         println!(
             "{:8}    {:8} {:20.16} {:20.16}",
             iterate.iteration,

@@ -30,6 +30,7 @@ use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, SubAlgorit
 /// iteration ends when these bounds meet. If the shapes overlap, the distance is 0, and
 /// [`signed_distance`](crate::signed_distance) finds the depth.
 ///
+#[doc(alias("gjk", "closest_points", "clearance", "separation", "gap"))]
 #[doc = include_str!("../doc/bracket.svg")]
 #[inline]
 pub fn distance<A, B>(a: &A, b: &B, options: DistanceOptions<A::Vector>) -> Distance<A::Vector>
@@ -273,6 +274,7 @@ impl<V: Vector> Distance<V> {
     /// If `b` moves too, subtract its path from the same room. The answer must be that of these bodies, with `a` in its
     /// pose of the query. If [`limit`](crate::DistanceOptions::limit) ended the query, the room is that of the lower
     /// bound found by then.
+    #[doc(alias("safe_step", "motion_bound"))]
     pub fn free_step<A: SupportMap<Vector = V> + ?Sized>(
         &self,
         a: &A,

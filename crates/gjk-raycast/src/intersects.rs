@@ -33,6 +33,7 @@ use crate::{DistanceOptions, Iterate, Status, SubAlgorithm};
 /// assert_eq!((next.overlap, next.iterations), (false, 1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("overlap", "sat", "separating_axis", "clash", "collide", "intersection_test"))]
 #[inline(always)]
 pub fn intersects<A, B>(a: &A, b: &B, options: IntersectOptions<A::Vector>) -> Intersection<A::Vector>
 where

@@ -1,6 +1,8 @@
 //! Ray casts, distances, contacts and continuous collision detection for convex shapes of any kind, which may move
 //! and turn, by the Gilbert–Johnson–Keerthi algorithm (GJK): 2D and 3D, `f32` and `f64`, with certified answers.
 //!
+#![doc = include_str!("../doc/ray.svg")]
+//!
 //! Shapes are support maps of [`convex_support`]: its primitives, its combinators, or your own. That crate is
 //! exported as [`gjk_raycast::convex_support`](convex_support), and glam as `gjk_raycast::convex_support::glam`.
 //!
@@ -120,6 +122,9 @@
 //!   can be built again from its bodies; and [`Linkage`], with its parts, its questions and its answers.
 
 #![no_std]
+#![forbid(unsafe_code)]
+// On docs.rs, each item says which feature it needs.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons are written so that NaN ends the loop they are in")]
 

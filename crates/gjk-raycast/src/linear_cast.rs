@@ -70,6 +70,7 @@ const NEAR_OF_STATED: f64 = 4.0;
 /// # Errors
 /// [`RayCastError::NonFinite`] if a velocity is not finite, the target distance is NaN or infinite, or the end of the
 /// motion NaN.
+#[doc(alias("shape_cast", "sweep", "convex_cast", "time_of_impact", "toi", "ccd", "swept_test"))]
 #[inline]
 pub fn linear_cast<A, B>(
     a: &A,

@@ -49,6 +49,7 @@ use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit
 ///
 /// # Errors
 /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
+#[doc(alias("raycast", "line_trace", "cast_ray", "ray_intersection"))]
 #[inline]
 pub fn ray_cast<S: SupportMap + ?Sized>(
     target: &S,

@@ -32,6 +32,7 @@ use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayHit, Status, ra
 ///
 /// # Errors
 /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
+#[doc(alias("back_face"))]
 pub fn ray_exit<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,

@@ -32,6 +32,7 @@ use crate::{Iterate, SignedDistance, SignedDistanceOptions, Status};
 /// overlap, an [expanding polytope](SignedDistance::unexpanded) proves that no way out is shorter than the one found;
 /// for two boxes the depth has a closed form.
 // Left to the compiler, it is a call in some programs, in which a ball and a box take half as long again.
+#[doc(alias("penetration_depth", "epa", "mpr", "expanding_polytope", "minimum_translation", "interference"))]
 #[inline(always)]
 pub fn signed_distance<A, B>(a: &A, b: &B, options: SignedDistanceOptions<A::Vector>) -> SignedDistance<A::Vector>
 where

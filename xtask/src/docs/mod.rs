@@ -2,6 +2,7 @@
 //! warning let pass; and a check that what the pages and the notes refer to is there, without a network.
 
 mod names;
+mod numbers;
 
 use std::fs;
 use std::io::{self, Write};
@@ -14,7 +15,7 @@ const LIBRARIES: [&str; 4] = ["convex-support", "gjk-raycast", "lj-ellipsoid", "
 pub fn run() -> ExitCode {
     let root = root();
     let checked = |pages: PathBuf| {
-        let complaints = [missing(root)?, names::missing(root)?, fetched(&pages)?].concat();
+        let complaints = [missing(root)?, names::missing(root)?, numbers::differing(root)?, fetched(&pages)?].concat();
         for complaint in &complaints {
             let _ = writeln!(io::stderr(), "error: {complaint}");
         }
@@ -121,7 +122,8 @@ mod tests {
 
     #[test]
     fn the_notes_lead_nowhere_that_is_not_there() {
-        let found = missing(root()).and_then(|links| Ok([links, names::missing(root())?].concat()));
+        let found = missing(root())
+            .and_then(|links| Ok([links, names::missing(root())?, numbers::differing(root())?].concat()));
         assert_eq!(found, Ok(Vec::new()));
     }
 }

@@ -5,7 +5,7 @@ use std::fs;
 use workloads::note;
 
 use super::questions::{SETS, asked_as};
-use crate::plot::{Mark, Panel, Panels};
+use crate::plot::{Mark, Panel, Panels, by_theme};
 
 /// What one answers to one kind of questions: the row of a table.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,13 +62,23 @@ pub fn panels(points: &[Point]) -> Panels {
         let marks: Vec<Mark> = points.iter().filter(|point| point.set == set).map(mark).collect();
         (!marks.is_empty()).then(|| Panel { title: title(set), marks })
     };
-    Panels { title: "Error against time".to_owned(), panels: sets.filter_map(panel).collect() }
+    Panels {
+        title: "How wrong, and how slow: ours and other libraries".to_owned(),
+        note: "Each library is asked only about shapes that it has.".to_owned(),
+        panels: sets.filter_map(panel).collect(),
+    }
+}
+
+/// The figure as a picture of its own.
+#[must_use]
+pub fn file(points: &[Point]) -> String {
+    by_theme(&panels(points).svg(2, ""))
 }
 
 /// What stands above a panel.
 fn title(set: &str) -> String {
     match set {
-        "overlap" => "overlap: time only".to_owned(),
+        "overlap" => "overlap, yes or no: time only".to_owned(),
         set => asked_as(set).to_owned(),
     }
 }
@@ -98,7 +108,7 @@ mod tests {
                    overlap,theirs 1.2,9,9,0,0,0,0,,,,100.0\n";
         let panels = panels(&read(csv));
         let titles: Vec<&str> = panels.panels.iter().map(|panel| panel.title.as_str()).collect();
-        assert_eq!(titles, ["distance", "overlap: time only"], "those of the suite are left out");
+        assert_eq!(titles, ["distance", "overlap, yes or no: time only"], "those of the suite are left out");
         let [ours, theirs] = panels.panels[0].marks.as_slice() else { panic!("two: {panels:?}") };
         assert!(ours.is_ours && !ours.is_single && ours.name == "ours f64", "{ours:?}");
         assert!(!theirs.is_ours && theirs.disproved == 2 && theirs.name == "theirs", "without its version: {theirs:?}");
@@ -108,7 +118,7 @@ mod tests {
     /// temporary files.
     #[test]
     fn the_figure_in_the_notes_is_that_of_the_recorded_numbers() {
-        let due = panels(&recorded()).svg(2, "");
+        let due = file(&recorded());
         let drawn = fs::read_to_string(note::path("figures/judge.svg")).expect("it is in the folder of figures");
         let file = std::env::temp_dir().join("judge.svg");
         if due != drawn {

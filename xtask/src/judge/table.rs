@@ -136,7 +136,7 @@ impl Report<'_> {
     /// The figure as a picture of its own.
     fn figure(&self) -> String {
         let about_ellipsoids = figure::recorded().into_iter().filter(|point| !SETS.contains(&point.set.as_str()));
-        figure::panels(&figure::read(&self.csv()).into_iter().chain(about_ellipsoids).collect::<Vec<_>>()).svg(2, "")
+        figure::file(&figure::read(&self.csv()).into_iter().chain(about_ellipsoids).collect::<Vec<_>>())
     }
 
     /// The rows in the order of the questions, and of those who answer.

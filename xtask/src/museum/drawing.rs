@@ -46,6 +46,8 @@ pub(super) struct Drawing {
 const DIRECTIONS: usize = 96;
 /// A body this many times as large as what else is seen is cut off at the border, if a part of it is seen.
 const LARGE: f64 = 4.0;
+/// A gap this many times as small as the bodies is seen from near; one that is still a hundred times smaller is not.
+const SMALL: f64 = 24.0;
 
 impl Drawing {
     /// The drawing of a query and of its answer.
@@ -108,6 +110,13 @@ impl Drawing {
         let (small, large) = if size(&own) <= size(&other) { (&own, &other) } else { (&other, &own) };
         if size(small) > 0.0 || !own.is_empty() {
             seen.extend(small);
+        }
+        // Between bodies at rest, a gap or a depth that would be a dot is seen from near.
+        let (all, across) = (size(&[own.as_slice(), &other].concat()), size(&points));
+        let is_small = across < all / SMALL && across > all / (100.0 * SMALL);
+        if is_small && source.is_none() && motions.iter().all(Motion::is_rest) {
+            let middle = middle(&points);
+            return Ok(Self { parts, middle, half: 3.0 * across });
         }
         let drawing = Self::around(parts.clone(), &seen);
         if size(large) > LARGE * size(&seen) && size(&seen) > 0.0 && drawing.shows(large) {

@@ -258,6 +258,17 @@ mod tests {
         assert!(pieces.len() >= 90, "{} poses", pieces.len());
     }
 
+    /// The README says how many are right, and how many proved.
+    #[test]
+    fn the_readme_has_these_counts() {
+        let pieces = pieces().expect("the file is there");
+        let count = |is: &dyn Fn(&Piece) -> bool| pieces.iter().filter(|piece| is(piece)).count();
+        let (right, proved) = (count(&Piece::is_right), count(&|piece| piece.proof == Some(Proof::Proved)));
+        let readme = fs::read_to_string(note::path("../README.md")).expect("it is at the root");
+        let said = format!("they answer {right} rightly, {proved} of them with a proof");
+        assert!(readme.split_whitespace().collect::<Vec<_>>().join(" ").contains(&said), "not in README.md: {said}");
+    }
+
     #[test]
     fn the_note_names_every_piece() {
         let page = fs::read_to_string(note::path("museum.md")).expect("it is in the folder of notes");

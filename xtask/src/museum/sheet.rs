@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::drawing::{ASPECT, Drawing, Flat, Role, cut};
-use crate::plot::escape;
+use crate::plot::{by_theme, escape};
 
 /// One cell of a sheet.
 pub(super) struct Cell {
@@ -23,7 +23,7 @@ const COLUMNS: usize = 3;
 /// The half width of a point.
 const DOT: f64 = 2.6;
 
-/// The sheet as an SVG file, on its own white ground; attributes say all, for viewers that know no style sheets.
+/// The sheet as an SVG file on its own ground, light or dark as the reader's pages are.
 pub(super) fn svg(title: &str, cells: &[Cell]) -> String {
     let rows = cells.len().div_ceil(COLUMNS);
     let (width, height) = (GAP + (WIDTH + GAP) * COLUMNS as f64, GAP + (HEIGHT + TEXT) * rows as f64);
@@ -52,7 +52,7 @@ pub(super) fn svg(title: &str, cells: &[Cell]) -> String {
         );
     }
     svg.push_str("</svg>\n");
-    svg
+    by_theme(&svg)
 }
 
 impl Drawing {

@@ -2,10 +2,12 @@
 //! paper.
 
 mod panels;
+mod theme;
 
 use std::fmt::Write as _;
 
 pub use self::panels::{Mark, Panel, Panels};
+pub use self::theme::{GROUND, INK, by_theme};
 
 /// One set of points of a plot.
 #[derive(Clone, Debug)]
@@ -100,6 +102,19 @@ impl Plot {
         }
         svg.push_str("</svg>\n");
         svg
+    }
+
+    /// The plot as a file: on its own ground, and light or dark as the reader's pages are.
+    pub fn file(&self) -> String {
+        let svg = self.svg().replacen(
+            "fill=\"currentColor\">",
+            &format!(
+                "color=\"{INK}\" fill=\"currentColor\">\n\
+            <rect width=\"100%\" height=\"100%\" fill=\"{GROUND}\"/>"
+            ),
+            1,
+        );
+        by_theme(&svg)
     }
 
     /// The names of the series in rows below the plot, where they cover nothing.

@@ -1,7 +1,7 @@
 //! Small panels with the same axes, one for each kind of question, in which each mark has its name beside it.
 //!
-//! The picture says what it is by plain attributes, so that any viewer shows it, on its own white ground. A page may
-//! replace the colours by the classes `ground`, `ink`, `faint`, `ours`, `other` and `false`.
+//! The picture says its colours by attributes, so that any viewer shows it, on its own ground. A page may replace the
+//! colours by the classes `ground`, `ink`, `faint`, `ours`, `other` and `false`.
 
 use std::fmt::Write as _;
 
@@ -32,6 +32,8 @@ pub struct Panel {
 #[derive(Clone, Debug)]
 pub struct Panels {
     pub title: String,
+    /// A sentence below the title: whose marks these are.
+    pub note: String,
     pub panels: Vec<Panel>,
 }
 
@@ -49,7 +51,7 @@ const HEIGHT: f64 = 196.0;
 const STEP: [f64; 2] = [WIDTH + 14.0, HEIGHT + 34.0];
 /// Where the first panel begins: room for the numbers of the vertical axis, and for titles.
 const LEFT: f64 = 80.0;
-const TOP: f64 = 62.0;
+const TOP: f64 = 106.0;
 /// Room beside the last panel, for half of a number, and below it for the title of the axis.
 const RIGHT: f64 = 14.0;
 const BOTTOM: f64 = 26.0;
@@ -59,7 +61,7 @@ const LETTER: f64 = 8.3;
 /// The half width of a mark.
 const RADIUS: f64 = 5.0;
 /// What is said of the marks: how many lines, and how high each is.
-const KEYS: usize = 8;
+const KEYS: usize = 6;
 const KEY_ROW: f64 = 24.0;
 
 /// A box on the picture: left, top, right, bottom.
@@ -78,10 +80,13 @@ impl Panels {
             "<svg class=\"{class}\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{2}\" xmlns=\"http://www.w3.org/2000/svg\" \
              font-family=\"system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif\" font-size=\"{FONT}\">\n\
              <rect class=\"ground\" width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n\
-             <g class=\"ink\" fill=\"#1c1c1e\">\n<text x=\"10\" y=\"24\" font-size=\"19\" font-weight=\"600\">{2}</text>\n",
+             <g class=\"ink\" fill=\"#1c1c1e\">\n<text x=\"10\" y=\"24\" font-size=\"19\" font-weight=\"600\">{2}</text>\n\
+             <text x=\"10\" y=\"46\">Lower is more accurate, further left is faster.</text>\n\
+             <text x=\"10\" y=\"66\">{3}</text>\n",
             size[0],
             size[1],
-            escape(&self.title)
+            escape(&self.title),
+            escape(&self.note)
         );
         for (k, panel) in self.panels.iter().enumerate() {
             let corner = corner(k, columns);
@@ -184,7 +189,11 @@ impl Panel {
         let labels: Vec<String> = marks.iter().map(|mark| mark.label()).collect();
         let widths: Vec<f64> =
             marks.iter().zip(&labels).map(|(mark, label)| mark.letter() * label.chars().count() as f64).collect();
-        let names = named(&places, &widths, [left + 1.0, top, left + WIDTH + 6.0, top + HEIGHT]);
+        let names = if self.has_errors() {
+            named(&places, &widths, [left + 1.0, top, left + WIDTH + 6.0, top + HEIGHT])
+        } else {
+            bars(svg, &places, &widths, left)
+        };
         for (((mark, label), &[x, y]), area) in marks.iter().zip(&labels).zip(&places).zip(names) {
             if let Some([to_x, to_y]) = tie([x, y], area) {
                 let _ = writeln!(
@@ -204,6 +213,23 @@ impl Panel {
             );
         }
     }
+}
+
+/// Where only times are told, a mark is the end of a bar, with its name behind it, or before it where there is no room.
+fn bars(svg: &mut String, places: &[[f64; 2]], widths: &[f64], left: f64) -> Vec<Area> {
+    let (half, away) = ((FONT + 2.5) / 2.0, RADIUS + 3.0);
+    let mut names = Vec::new();
+    for (&[x, y], width) in places.iter().zip(widths) {
+        let is_behind = x + away + width <= left + WIDTH;
+        let from = if is_behind { x + away } else { x - away - width };
+        let end = if is_behind { x } else { from - 4.0 };
+        let _ = writeln!(
+            svg,
+            "<path class=\"faint\" d=\"M{left:.1} {y:.1}H{end:.1}\" fill=\"none\" stroke=\"#d4d6db\" stroke-width=\"7\"/>"
+        );
+        names.push([from, y - half, from + width, y + half]);
+    }
+    names
 }
 
 impl Mark {
@@ -260,8 +286,6 @@ fn key(svg: &mut String, [left, top]: [f64; 2], columns: usize) {
         (Some(mark(false, true, 0)), "another library, single"),
         (Some(mark(false, false, 1)), "proved false: how many"),
         (None, "Ellipsoids: relative error."),
-        (None, "Lower is more accurate,"),
-        (None, "further left is faster."),
     ];
     for (k, (mark, text)) in lines.iter().enumerate() {
         let y = top + KEY_ROW * (0.5 + (k / columns) as f64);
@@ -420,6 +444,7 @@ mod tests {
         assert_eq!(mark(7e6, 0).label(), "theirs 7 ms →");
         let panels = Panels {
             title: "all".to_owned(),
+            note: "each".to_owned(),
             panels: vec![Panel { title: "one".to_owned(), marks: vec![mark(900.0, 0)] }],
         };
         let svg = panels.svg(1, "");

@@ -5,7 +5,7 @@ use super::page::Drawing;
 use super::progress::progress;
 use crate::judge::figure::{OF_ELLIPSOIDS, Point, is_ours, panels, recorded};
 use crate::judge::{judged, proved, questions, witnesses};
-use crate::plot::duration;
+use crate::plot::{Panels, duration};
 use crate::table::quantile;
 
 /// How many questions of each kind are asked of each shape or pair of shapes.
@@ -28,7 +28,7 @@ pub(super) fn headline(records: &[Record]) -> Headline {
     points.extend(others);
     let drawing = Drawing {
         name: "headline".to_owned(),
-        panels: panels(&points),
+        panels: Panels { note: "Ours: this run, this machine. Others: as recorded, on another.".to_owned(), ..panels(&points) },
         caption: "Filled marks are ours, measured in this run. Hollow marks and crosses are other libraries, as recorded in docs/comparison.md with date \
                   and machine, each asked about those bodies that it has. Near contact, bodies are a millionth of the scene apart. The error of an ellipsoid around points is relative to its \
                   volume, and that of a margin m to 1 + m."
@@ -41,9 +41,9 @@ pub(super) fn headline(records: &[Record]) -> Headline {
 fn ours() -> Vec<Point> {
     let questions = questions::of_workloads(EACH);
     let witnesses = ["f64", "f32"].map(|precision| {
-        witnesses::ours(&questions, precision, |k| progress(&format!("the first figure: question {k} in {precision}")))
+        witnesses::ours(&questions, precision, |k| progress(&format!("timing question {k} in {precision}")))
     });
-    let cases = proved(questions, |k| progress(&format!("the first figure: question {k}")));
+    let cases = proved(questions, |k| progress(&format!("proving bounds for question {k}")));
     let rows = witnesses.iter().flat_map(|witness| judged(witness, &cases, &mut String::new()));
     rows.filter_map(|row| row.point()).collect()
 }

@@ -11,7 +11,7 @@ pub mod stiff;
 pub mod summary;
 
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Write};
+use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -228,10 +228,9 @@ fn validate(scope: &Scope, chapters: &[Chapter]) -> Result<bool, String> {
     }
     progress::end();
     let mut output = io::stdout().lock();
-    let written = summary::print(&records, &mut output).and_then(|()| {
-        let page = report::write(&records, first.as_ref(), &sections, &scope.report)?;
-        writeln!(output, "report: {}", page.display())
-    });
+    let sentences = first.as_ref().map_or(&[] as &[String], |first| &first.sentences);
+    let written = report::write(&records, first.as_ref(), &sections, &scope.report)
+        .and_then(|page| summary::print(&records, sentences, &page, &mut output));
     match written {
         Err(why) if why.kind() == io::ErrorKind::BrokenPipe => Ok(true),
         Err(why) => Err(format!("cannot write the report: {why}")),

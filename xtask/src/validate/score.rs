@@ -50,7 +50,7 @@ pub struct Verdict {
     /// Whether an error came where an answer was due.
     pub errored: bool,
     /// The error of the scalar that is worst in units of what is allowed: absolute, and relative to the truth where
-    /// that is not zero. That of the logarithm of a volume is relative already: to the volume.
+    /// that is larger than what is allowed. That of the logarithm of a volume is relative already: to the volume.
     pub error: Option<f64>,
     pub relative: Option<f64>,
     /// The error over what is allowed.
@@ -169,6 +169,8 @@ fn judge_scalar(case: &Object, answer: &Object, name: &str, due: &Value, verdict
     verdict.relative = match due[worst].abs() {
         _ if name == "log_det" => Some(error),
         0.0 => None,
+        // Of a truth smaller than what is allowed, such as a hit at 3e-17, no part has a meaning.
+        due if due < allow[worst] && error <= allow[worst] => None,
         due => Some(error / due.max(f64::MIN_POSITIVE)),
     };
     if ratio(worst) > 1.0 {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
+use std::path::Path;
 
 use super::Record;
 use super::page::error;
@@ -69,12 +70,12 @@ pub const HEADERS: [&str; 12] = [
     "wrong",
     "wide though converged",
     "secondary errors",
-    "median error",
+    "median relative error",
     "99 % below",
-    "worst error",
-    "error / tolerance",
-    "steps",
-    "most steps",
+    "worst",
+    "share of the allowed error",
+    "iterations",
+    "most",
     "median time",
 ];
 
@@ -106,13 +107,17 @@ pub fn total(records: &[Record]) -> Group {
 /// The most wrong answers that are told one by one.
 const TOLD: usize = 20;
 
-/// Prints the summary.
-pub fn print(records: &[Record], output: &mut impl Write) -> io::Result<()> {
-    writeln!(output, "By file:")?;
-    table(output, "file", &by_file(records))?;
-    stiff::print(records, output)?;
-    writeln!(output, "By question:")?;
-    table(output, "question", &by_query(records))?;
+/// Prints the verdict, what it means, where the page is, and then tables.
+pub fn print(records: &[Record], sentences: &[String], page: &Path, output: &mut impl Write) -> io::Result<()> {
+    let total = total(records);
+    writeln!(
+        output,
+        "{} right, {} wrong: questions with known answers, each within the error that its case allows.",
+        total.cases - total.wrong,
+        total.wrong
+    )?;
+    sentences.iter().try_for_each(|sentence| writeln!(output, "{sentence}"))?;
+    writeln!(output, "The page, with figures and every case: {}\n", page.display())?;
     let bad: Vec<&Record> = records.iter().filter(|r| !r.verdict.wrong.is_empty()).collect();
     for record in bad.iter().take(TOLD) {
         let Record { file, id, tags, verdict, .. } = record;
@@ -121,26 +126,26 @@ pub fn print(records: &[Record], output: &mut impl Write) -> io::Result<()> {
     if bad.len() > TOLD {
         writeln!(output, "… and {} more wrong; the report lists all", bad.len() - TOLD)?;
     }
-    for record in records.iter().filter(|r| !r.verdict.soft.is_empty()).take(TOLD) {
-        writeln!(
-            output,
-            "right, with a secondary error: {} {}: {}",
-            record.file,
-            record.id,
-            record.verdict.soft.join("; ")
-        )?;
+    let errored = bad.iter().filter(|record| record.verdict.errored).count();
+    if errored > 0 {
+        writeln!(output, "{errored} of the wrong ones are errors where an answer was due")?;
     }
-    let total = total(records);
-    writeln!(
-        output,
-        "{} cases: {} right, {} wrong ({} of them errors where an answer was due), {} with a secondary error",
-        total.cases,
-        total.cases - total.wrong,
-        total.wrong,
-        bad.iter().filter(|record| record.verdict.errored).count(),
-        total.soft
-    )
+    writeln!(output, "By question; {EXPLAINED}")?;
+    table(output, "question", &by_query(records))?;
+    writeln!(output, "By file:")?;
+    table(output, "file", &by_file(records))?;
+    stiff::print(records, output)?;
+    for record in records.iter().filter(|r| !r.verdict.soft.is_empty()).take(TOLD) {
+        let Record { file, id, verdict, .. } = record;
+        writeln!(output, "right, with a secondary error: {file} {id}: {}", verdict.soft.join("; "))?;
+    }
+    Ok(())
 }
+
+/// What the columns of the tables mean.
+const EXPLAINED: &str = "errors are relative to the truth, where that is larger than the error allowed. An answer is \
+    right if it takes up at most 1 of that; iterations are support points, mostly. A secondary error is one of what \
+    stands beside a right value: a normal, a point, a bound wider than it need be.";
 
 fn table(output: &mut impl Write, title: &str, groups: &BTreeMap<String, Group>) -> io::Result<()> {
     let headers: Vec<&str> = [title].into_iter().chain(HEADERS).collect();

@@ -123,6 +123,11 @@ impl Answer {
         self.with("certain", Field::Flag(lower.is_finite() && upper.is_finite()))
     }
 
+    /// The field of this name.
+    pub fn field(&self, name: &str) -> Option<&Field> {
+        self.fields.iter().find(|(of, _)| *of == name).map(|(_, field)| field)
+    }
+
     /// The first field that JSON cannot hold.
     pub fn non_finite(&self) -> Option<&'static str> {
         self.fields.iter().find(|(_, field)| !field.is_finite()).map(|(name, _)| *name)

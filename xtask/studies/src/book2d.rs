@@ -13,6 +13,7 @@ use std::process::ExitCode;
 use convex_support::glam::DVec2;
 use convex_support::{Point, Polytope};
 use gjk_raycast::{Distance, DistanceOptions, Iterate, distance_with};
+use xtask::plot::{GROUND, INK, by_theme};
 
 /// A convex polygon whose distance from the origin is asked for, and the vertex to start at.
 struct Figure {
@@ -99,16 +100,22 @@ fn svg(figure: &Figure, steps: &[Step], end: &Distance<DVec2>) -> String {
         let corners: Vec<String> = points.map(at).map(|p| format!("{:.1} {:.1}", p.x, p.y)).collect();
         format!("M{}", corners.join("L"))
     };
-    let dot = |p: DVec2, name: &str, colour: &str| {
+    // A point, and its name to the right and above, or as far aside as is said.
+    let dot = |p: DVec2, name: &str, colour: &str, aside: DVec2| {
         let p = at(p);
         format!(
             "<circle cx=\"{0:.1}\" cy=\"{1:.1}\" r=\"4\" fill=\"{colour}\"/>\
              <text x=\"{2:.1}\" y=\"{3:.1}\" fill=\"{colour}\">{name}</text>",
             p.x,
             p.y,
-            p.x + 7.0,
-            p.y - 6.0
+            p.x + aside.x,
+            p.y + aside.y
         )
+    };
+    let above = DVec2::new(7.0, -6.0);
+    let ring = |p: DVec2| {
+        let p = at(p);
+        format!("<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"8\" stroke=\"#0072b2\" stroke-width=\"3\"/>", p.x, p.y)
     };
     let outline = path(&mut figure.polygon.iter().map(|&p| DVec2::from_array(p)));
     // The first iterate has no simplex yet, only a direction: it is left to the text.
@@ -118,24 +125,26 @@ fn svg(figure: &Figure, steps: &[Step], end: &Distance<DVec2>) -> String {
         .filter(|(_, step)| !step.simplex.is_empty())
         .map(|(k, Step { simplex, v, w })| {
             let s = path(&mut simplex.iter().copied());
-            // The line through V across V: the support point lies nearest to the origin along it.
-            let along = v.perp().normalize_or_zero() * 2.0;
+            // The line through W across V: no point of the polygon is nearer to the origin along V.
+            let along = v.perp().normalize_or_zero() * PANEL.x;
             let mut drawing = format!(
-                "<path d=\"{s}Z\" fill=\"#0072b2\" fill-opacity=\".25\" stroke=\"#0072b2\" stroke-width=\"3\"/>\
+                "<path d=\"{s}Z\" stroke=\"#0072b2\" stroke-width=\"3\"/>\
                  <path d=\"{}\" stroke=\"#d55e00\" stroke-dasharray=\"3 3\"/>\
                  <path d=\"{}\" stroke=\"#009e73\" stroke-dasharray=\"6 3\"/>",
                 path(&mut [DVec2::ZERO, *v].into_iter()),
                 path(&mut [*w - along, *w + along].into_iter()),
             );
-            drawing.extend(simplex.iter().map(|&p| dot(p, "", "#0072b2")));
-            drawing += &dot(*w, &format!("W<tspan baseline-shift=\"sub\">{k}</tspan>"), "#009e73");
-            drawing += &dot(*v, &format!("V<tspan baseline-shift=\"sub\">{k}</tspan>"), "#d55e00");
+            drawing.extend(simplex.iter().map(|&p| ring(p)));
+            // Beside the line, on the side of the polygon.
+            let inward = v.normalize_or_zero() * DVec2::new(20.0, -20.0) + DVec2::new(0.0, 16.0);
+            drawing += &dot(*w, &format!("W<tspan baseline-shift=\"sub\">{k}</tspan>"), "#009e73", inward);
+            drawing += &dot(*v, &format!("V<tspan baseline-shift=\"sub\">{k}</tspan>"), "#d55e00", above * 1.6);
             let plural = if simplex.len() == 1 { "vertex" } else { "vertices" };
             (format!("k = {k}: {} {plural}, |V| = {:.4}", simplex.len(), v.length()), drawing)
         })
         .chain([(
             format!("end: distance {:.4}", end.distance),
-            if end.overlap { String::new() } else { dot(end.point_a, "closest point", "#d55e00") },
+            if end.overlap { String::new() } else { dot(end.point_a, "closest point", "#d55e00", above) },
         )])
         .collect();
     let columns = (1..).find(|n| n * n >= panels.len()).unwrap_or(1);
@@ -143,24 +152,27 @@ fn svg(figure: &Figure, steps: &[Step], end: &Distance<DVec2>) -> String {
     let mut svg = format!(
         "<svg viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\" fill=\"none\" \
          font-family=\"system-ui, sans-serif\" font-size=\"17\">\n<title>Descent of GJK on the {}</title>\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+         <rect width=\"100%\" height=\"100%\" fill=\"{GROUND}\"/>\n\
+         <clipPath id=\"panel\"><rect width=\"{}\" height=\"{}\"/></clipPath>\n",
         columns as f64 * PANEL.x,
         rows as f64 * PANEL.y,
-        figure.name
+        figure.name,
+        PANEL.x,
+        PANEL.y - 4.0
     );
     for (i, (caption, drawing)) in panels.iter().enumerate() {
         let corner = DVec2::new((i % columns) as f64, (i / columns) as f64) * PANEL;
         let _ = writeln!(
             svg,
-            "<g transform=\"translate({} {})\"><path d=\"{outline}Z\" stroke=\"#000\" stroke-opacity=\".5\"/>\
-             {}{drawing}<text x=\"12\" y=\"22\" fill=\"#000\">{caption}</text></g>",
+            "<g transform=\"translate({} {})\" clip-path=\"url(#panel)\"><path d=\"{outline}Z\" stroke=\"{INK}\" stroke-opacity=\".5\"/>\
+             {}{drawing}<text x=\"12\" y=\"22\" fill=\"{INK}\">{caption}</text></g>",
             corner.x,
             corner.y,
-            dot(DVec2::ZERO, "origin", "#000")
+            dot(DVec2::ZERO, "origin", INK, above)
         );
     }
     svg.push_str("</svg>\n");
-    svg
+    by_theme(&svg)
 }
 
 #[cfg(test)]

@@ -66,6 +66,9 @@ enum Task {
         /// Its width in pixels; the height is 9/16 of it.
         #[arg(long, default_value_t = 1280, value_parser = clap::value_parser!(u32).range(16..=16384))]
         width: u32,
+        /// By night, for dark pages.
+        #[arg(long)]
+        night: bool,
     },
 }
 
@@ -78,6 +81,6 @@ fn main() -> ExitCode {
         Task::Judge(scope) => judge::run(&scope),
         Task::Growth(choice) => scene_growth::run(&choice),
         Task::Book2d { output } => book2d::run(&output),
-        Task::Render { file, width } => render::run(&file, width),
+        Task::Render { file, width, night } => render::run(&file, width, night),
     }
 }

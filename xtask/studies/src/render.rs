@@ -35,8 +35,26 @@ const SAMPLES: u32 = 4;
 /// The middle of the sun, and its radius as seen from the ground.
 const SUN: Vec3A = Vec3A::new(-0.55, 0.8, 0.5);
 const SUN_RADIUS: f32 = 0.06;
-const SUNLIGHT: Vec3 = Vec3::new(1.0, 0.94, 0.84);
-const SKYLIGHT: Vec3 = Vec3::new(0.62, 0.7, 0.82);
+
+/// The colours of light.
+struct Light {
+    sun: Vec3,
+    sky: Vec3,
+    /// What is seen where nothing is, at the ground and overhead.
+    backdrop: [Vec3; 2],
+}
+
+/// For light pages, and for dark ones.
+const DAY: Light = Light {
+    sun: Vec3::new(1.0, 0.94, 0.84),
+    sky: Vec3::new(0.62, 0.7, 0.82),
+    backdrop: [Vec3::new(0.80, 0.84, 0.88), Vec3::new(0.42, 0.53, 0.68)],
+};
+const NIGHT: Light = Light {
+    sun: Vec3::new(0.62, 0.66, 0.78),
+    sky: Vec3::new(0.07, 0.09, 0.14),
+    backdrop: [Vec3::new(0.022, 0.028, 0.042), Vec3::new(0.004, 0.006, 0.011)],
+};
 
 /// The part of the sun and of the sky that sample `i` asks for light.
 fn lights(i: u32) -> (Vec3A, Vec3A) {
@@ -53,14 +71,14 @@ fn lights(i: u32) -> (Vec3A, Vec3A) {
 }
 
 /// Renders the picture into a PNG file.
-pub(crate) fn run(file: &Path, width: u32) -> ExitCode {
-    match render(file, width, &mut io::stdout().lock()) {
+pub(crate) fn run(file: &Path, width: u32, night: bool) -> ExitCode {
+    match render(file, width, if night { &NIGHT } else { &DAY }, &mut io::stdout().lock()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(why) => xtask::output::failed(&format!("cannot write {}", file.display()), &why),
     }
 }
 
-fn render(file: &Path, width: u32, output: &mut impl Write) -> io::Result<()> {
+fn render(file: &Path, width: u32, light: &Light, output: &mut impl Write) -> io::Result<()> {
     let things = things().map_err(io::Error::other)?;
     let height = width * 9 / 16;
     let casts = AtomicU64::new(0);
@@ -71,7 +89,7 @@ fn render(file: &Path, width: u32, output: &mut impl Write) -> io::Result<()> {
         .into_par_iter()
         .map(|y| {
             let mut tally = Tally::default();
-            let row = (0..width).flat_map(|x| camera.pixel(x, y, &things, &mut tally)).collect();
+            let row = (0..width).flat_map(|x| camera.pixel(x, y, &things, light, &mut tally)).collect();
             casts.fetch_add(tally.casts, Ordering::Relaxed);
             undecided.fetch_add(tally.undecided, Ordering::Relaxed);
             row
@@ -142,7 +160,7 @@ impl Camera {
     }
 
     /// The colour of a pixel, averaged over its samples and encoded for a screen.
-    fn pixel(&self, x: u32, y: u32, things: &[Thing], tally: &mut Tally) -> [u8; 3] {
+    fn pixel(&self, x: u32, y: u32, things: &[Thing], light: &Light, tally: &mut Tally) -> [u8; 3] {
         let mut sum = Vec3::ZERO;
         for sample in 0..SAMPLES * SAMPLES {
             let part = |i: u32| (i as f32 + 0.5) / SAMPLES as f32;
@@ -150,7 +168,7 @@ impl Camera {
             let v = 1.0 - 2.0 * (y as f32 + part(sample / SAMPLES)) / self.height as f32;
             let aspect = self.height as f32 / self.width as f32;
             let direction = self.forward + self.right * u + self.up * (v * aspect);
-            sum += shade(Ray { source: self.eye, direction }, sample, 1, things, tally);
+            sum += shade(Ray { source: self.eye, direction }, sample, 1, things, light, tally);
         }
         let linear = sum / (SAMPLES * SAMPLES) as f32;
         linear.powf(1.0 / 2.2).clamp(Vec3::ZERO, Vec3::ONE).to_array().map(|c| (c * 255.0).round() as u8)
@@ -158,13 +176,14 @@ impl Camera {
 }
 
 /// What is seen where nothing is: brighter towards the ground.
-fn backdrop(direction: Vec3A) -> Vec3 {
+fn backdrop(direction: Vec3A, light: &Light) -> Vec3 {
     let height = direction.normalize().y;
-    Vec3::new(0.80, 0.84, 0.88).lerp(Vec3::new(0.42, 0.53, 0.68), (0.5 + 1.6 * height).clamp(0.0, 1.0))
+    let [low, high] = light.backdrop;
+    low.lerp(high, (0.5 + 1.6 * height).clamp(0.0, 1.0))
 }
 
 /// The light that comes back along a ray, mirrored at most `bounces` times.
-fn shade(ray: Ray<Vec3A>, sample: u32, bounces: u32, things: &[Thing], tally: &mut Tally) -> Vec3 {
+fn shade(ray: Ray<Vec3A>, sample: u32, bounces: u32, things: &[Thing], of: &Light, tally: &mut Tally) -> Vec3 {
     let mut nearest: Option<(f32, Vec3A, &Thing)> = None;
     for thing in things {
         // Nothing behind what was hit already needs to be looked at.
@@ -173,7 +192,7 @@ fn shade(ray: Ray<Vec3A>, sample: u32, bounces: u32, things: &[Thing], tally: &m
             nearest = Some((lambda, normal, thing));
         }
     }
-    let Some((lambda, normal, thing)) = nearest else { return backdrop(ray.direction) };
+    let Some((lambda, normal, thing)) = nearest else { return backdrop(ray.direction, of) };
     let towards = -ray.direction.normalize();
     // Off the surface, so that it does not shade itself.
     let spot = ray.at(lambda) + normal * 1e-3;
@@ -185,12 +204,12 @@ fn shade(ray: Ray<Vec3A>, sample: u32, bounces: u32, things: &[Thing], tally: &m
     let sunlit = reaches(sun, f32::INFINITY);
     // What is far away darkens the sky no more.
     let skylit = reaches(sky, 4.0);
-    let mut light = SKYLIGHT * (0.16 - 0.08 * normal.y);
+    let mut light = of.sky * (0.16 - 0.08 * normal.y);
     if sunlit {
-        light += SUNLIGHT * (0.85 * normal.dot(sun));
+        light += of.sun * (0.85 * normal.dot(sun));
     }
     if skylit {
-        light += SKYLIGHT * (1.1 * normal.dot(sky));
+        light += of.sky * (1.1 * normal.dot(sky));
     }
     let mut seen = thing.colour * light;
     // Schlick's approximation of what glass-like gloss mirrors.
@@ -198,16 +217,16 @@ fn shade(ray: Ray<Vec3A>, sample: u32, bounces: u32, things: &[Thing], tally: &m
     let mirrored = thing.gloss * (0.04 + 0.96 * (1.0 - facing).powi(5));
     if bounces > 0 {
         let direction = normal * (2.0 * normal.dot(towards)) - towards;
-        let other = shade(Ray { source: spot, direction }, sample, bounces - 1, things, tally);
+        let other = shade(Ray { source: spot, direction }, sample, bounces - 1, things, of, tally);
         seen = seen.lerp(other, mirrored);
     }
     if sunlit {
         let half = (sun + towards).normalize();
-        seen += SUNLIGHT * (thing.gloss * 0.5 * normal.dot(half).max(0.0).powi(90));
+        seen += of.sun * (thing.gloss * 0.5 * normal.dot(half).max(0.0).powi(90));
     }
     // The floor has no end: it fades into the backdrop.
     let far = ((spot.length() - 6.0) / 9.0).clamp(0.0, 1.0);
-    seen.lerp(backdrop(ray.direction), far * far * (3.0 - 2.0 * far))
+    seen.lerp(backdrop(ray.direction, of), far * far * (3.0 - 2.0 * far))
 }
 
 fn thing<S>(shape: S, colour: [f32; 3], [x, y, z]: [f32; 3], rotation: Quat) -> Result<Thing, InvalidShape>

@@ -53,10 +53,9 @@ pub(crate) fn run(choice: &Choice) -> ExitCode {
     let written = folders.iter().try_for_each(|(tables, pictures)| {
         fs::create_dir_all(pictures)?;
         fs::write(tables.join("scene-growth.csv"), csv(&lines))?;
-        figures(&lines).iter().try_for_each(|figure| {
-            let svg = figure.plot.svg().replacen("<svg ", "<svg style=\"background:#fff;color:#1c1c1e\" ", 1);
-            fs::write(pictures.join(format!("{}.svg", figure.name)), svg)
-        })
+        figures(&lines)
+            .iter()
+            .try_for_each(|figure| fs::write(pictures.join(format!("{}.svg", figure.name)), figure.plot.file()))
     });
     let shown =
         written.and_then(|()| write!(io::stdout().lock(), "{}\nMeasured on {}.\n", table(&lines), provenance()));
@@ -191,14 +190,14 @@ pub(crate) fn figures(lines: &[Line]) -> [Figure; 2] {
         figure(
             lines,
             "scene-growth",
-            "A question to a scene, against its bodies",
+            "Time of one query, by number of bodies",
             &Kind::ALL[..3],
             &[inputs.as_str(), resting].join(" "),
         ),
         figure(
             lines,
             "scene-growth-casts",
-            "Casts and pairs, against the bodies",
+            "Time of casts and pairs, by number of bodies",
             &Kind::ALL[3..],
             &[inputs.as_str(), moving].join(" "),
         ),

@@ -52,6 +52,7 @@ pub use self::outer_box::outer_box;
 /// assert!(bound <= 1.0 && bound > 0.999_999); // conservative: rounded towards zero
 /// # Ok::<(), &str>(())
 /// ```
+#[doc(alias("aabb_tree", "dynamic_tree", "broad_phase"))]
 #[derive(Clone, Debug)]
 pub struct Bvh<V: Vector> {
     /// Node 0 is the root. Children come after their parents, so that one pass from the end visits them first.

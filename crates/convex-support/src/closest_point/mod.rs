@@ -35,6 +35,7 @@ use crate::{Core, SupportMap, Vector};
 /// The error is a few units in the last place of the larger of the distance of `x` from the shape's own centre and the
 /// shape's size, also for aspect ratios of 1e6 and beyond. Coordinates at which squares of lengths leave the range of
 /// the scalar are handled by scaling. A `NaN` in `x` gives some vector, possibly of `NaN`s.
+#[doc(alias("project_point", "nearest_point"))]
 #[must_use]
 pub fn closest_point<S: SupportMap + ?Sized>(shape: &S, x: S::Vector) -> Option<S::Vector> {
     let Core { origin, radius, .. } = shape.core();

@@ -19,6 +19,7 @@ use crate::{CrossedByLine, SupportMap};
 /// assert_eq!(support_value(&cso, DVec3::X), 1.5);
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
+#[doc(alias("minkowski_difference", "configuration_space_obstacle", "cso"))]
 #[doc = include_str!("../../doc/cso.svg")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference<A: SupportMap, B>(MinkowskiSum<A, Reflected<B>>);

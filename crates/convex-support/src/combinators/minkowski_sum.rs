@@ -21,6 +21,7 @@ use crate::{
 /// assert_eq!(MinkowskiSum::new(square, path).support(DVec2::ONE), DVec2::new(6.0, 1.0));
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
+#[doc(alias("swept_volume", "sweep", "dilation"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MinkowskiSum<A: SupportMap, B> {
     a: A,

@@ -31,6 +31,7 @@ use crate::{
 // In this order, the rotation, which is computed last, lies behind the numbers of an error that `new` might return in
 // its place. A field that shares its place with those is copied in other pieces than it was written in, for which a
 // processor waits.
+#[doc(alias("transform", "isometry", "oriented", "obb"))]
 #[repr(C)]
 pub struct Posed<S: SupportMap> {
     /// A bound on the error of the core's support points, as a length.

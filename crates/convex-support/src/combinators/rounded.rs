@@ -22,6 +22,7 @@ use crate::{
 /// assert_eq!(Rounded::new(triangle, 0.5)?.support(DVec2::X), DVec2::new(1.5, 0.0));
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
+#[doc(alias("inflate", "offset", "margin", "skin", "padding"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounded<S: SupportMap> {
     shape: S,

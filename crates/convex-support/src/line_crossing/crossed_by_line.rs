@@ -62,6 +62,7 @@ pub trait CrossedByLine: SupportMap {
 /// within this error, rounding decides whether it hits. Squares of lengths must stay in range (about 1e±150 in
 /// `f64`, 1e±18 in `f32`); directions may have any length. A zero direction has no line and a `NaN` no crossing: a
 /// miss.
+#[doc(alias("ray_cast", "ray_intersection", "clip_line"))]
 #[inline(always)]
 pub fn line_crossing<S: CrossedByLine + ?Sized>(
     shape: &S,

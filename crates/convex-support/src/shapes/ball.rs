@@ -18,6 +18,7 @@ use crate::{
 /// assert_eq!(ball.support(DVec3::new(0.0, 0.0, 9.0)), DVec3::new(0.0, 0.0, 2.0));
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
+#[doc(alias("sphere", "circle", "disc"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball<V: Vector> {
     radius: V::Scalar,

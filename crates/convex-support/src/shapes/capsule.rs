@@ -23,6 +23,7 @@ use crate::{
 /// assert_eq!(support_value(&capsule, DVec2::X), 0.5);
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
+#[doc(alias("stadium", "spherocylinder", "sphyl", "swept_sphere"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule<V: Vector> {
     half_height: V::Scalar,

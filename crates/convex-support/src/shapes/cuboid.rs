@@ -17,6 +17,7 @@ use crate::{
 /// assert_eq!(cuboid.support(DVec3::new(1.0, -1.0, 1.0)), DVec3::new(1.0, -2.0, 3.0));
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
+#[doc(alias("box", "obb", "rectangle"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid<V: Vector> {
     half_extents: V,

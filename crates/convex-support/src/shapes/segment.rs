@@ -21,6 +21,7 @@ use crate::{
 /// assert_eq!(segment.support(DVec2::Y), DVec2::new(2.0, 1.0));
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
+#[doc(alias("edge", "line_segment"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment<V: Vector> {
     points: [V; 2],

@@ -48,6 +48,7 @@ use crate::{Answer, EllipsoidPair, InvalidQuery, Margin, MarginOptions, free_mar
 /// assert_eq!(nearest.pairs_evaluated + nearest.left_out.total(), 1000);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("robot_clearance", "minimum_distance"))]
 #[derive(Clone, Debug)]
 pub struct Clearance<V: Vector> {
     options: MarginOptions,

@@ -44,6 +44,7 @@ pub(crate) use surface::Level;
 /// contact. A corner of their overlap belongs to the contact if the surfaces there overlap or are no farther apart
 /// than `within`, but for a thousandth of the smaller shape's size. At most four corners are kept, in 2D two: those
 /// that span the overlap well, and one as deep as the shapes are, but for a thousandth of the size.
+#[doc(alias("contact_manifold", "manifold", "collide"))]
 pub fn contact<A, B>(
     a: &A,
     b: &B,

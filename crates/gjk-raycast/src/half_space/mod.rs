@@ -22,6 +22,7 @@ pub(crate) use self::plane::Plane;
 /// [`ray_cast`](Self::ray_cast), [`linear_cast`](Self::linear_cast), [`motion_cast`](Self::motion_cast),
 /// [`distance_from`](Self::distance_from), [`signed_distance`](Self::signed_distance) and [`contact`](Self::contact).
 /// It can be a body of a [`Scene`](crate::Scene).
+#[doc(alias("plane", "floor", "ground"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace<V: Vector> {
     normal: V,

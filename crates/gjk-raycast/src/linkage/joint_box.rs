@@ -106,6 +106,7 @@ impl<S: SupportMap> Linkage<S> {
     /// # Errors
     /// [`LinkageError`] if the pair is not of two links, the box has another number of intervals than there are joint
     /// values, an interval ends before it begins or is not finite, or the target distance is not finite.
+    #[doc(alias("self_collision", "configuration_space"))]
     pub fn joint_box(
         &self,
         pair: [usize; 2],

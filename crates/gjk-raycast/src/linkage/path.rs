@@ -31,6 +31,7 @@ impl<S: SupportMap> Linkage<S> {
     /// # Errors
     /// [`LinkageError`] if the path is empty, a waypoint has another number of values than [`values`](Self::values), a
     /// value is not finite, or an option is NaN.
+    #[doc(alias("edge_check", "motion_validation", "local_planner"))]
     pub fn path<O: SupportMap<Vector = S::Vector>, W: AsRef<[ScalarOf<S>]>>(
         &self,
         waypoints: &[W],

@@ -56,6 +56,7 @@ use crate::{Impact, axial};
 /// All bodies are of one type, as in a [`Scene`](crate::Scene). Links are tested against one another only in the
 /// [pairs](Self::with_pairs) that you name. Two robots that both move are one linkage of two trees, with pairs of
 /// links of both.
+#[doc(alias("robot", "kinematic_chain", "articulation", "manipulator"))]
 #[derive(Clone, Debug)]
 pub struct Linkage<S: SupportMap> {
     pub(super) skeleton: Skeleton<S::Vector>,

@@ -46,6 +46,7 @@ use num_traits::Float as _;
 /// # Errors
 /// [`RayCastError::NonFinite`] if a number of a [`RigidMotion`] is not finite, the target distance is NaN or
 /// infinite, or another option NaN.
+#[doc(alias("nonlinear_shape_cast", "continuous_collision", "ccd", "toi", "conservative_advancement"))]
 pub fn motion_cast<A, B>(
     a: &A,
     motion_a: impl Trajectory<Vector = A::Vector>,

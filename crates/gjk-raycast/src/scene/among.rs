@@ -71,6 +71,7 @@ impl<S: SupportMap> Scene<S> {
     }
 
     /// Questions about the bodies for whose index `picked` returns true, such as those of a layer or a group.
+    #[doc(alias("layer", "mask", "filter", "group", "query_filter"))]
     #[must_use]
     pub fn among<'s>(&'s self, picked: &'s (dyn Fn(usize) -> bool + Sync + 's)) -> Among<'s, S> {
         Among { bodies: Some(picked), ..self.all() }
@@ -102,6 +103,7 @@ impl<'s, S: SupportMap> Among<'s, S> {
     /// Leaves out the pairs for whose indices `left_out` returns true, such as those of one group, or those that
     /// are allowed to collide. It is called once for each pair whose boxes are near: with the lower index first, or for
     /// two scenes with the index in the first one.
+    #[doc(alias("collision_filter", "allowed_collision_matrix"))]
     #[must_use]
     pub fn without_pairs(self, left_out: &'s (dyn Fn(usize, usize) -> bool + Sync + 's)) -> Self {
         Self { without_pairs: Some(left_out), ..self }

@@ -81,6 +81,7 @@ pub use self::body::Body;
 /// A compound is represented by several bodies that are moved together. [`among`](Self::among) restricts a question
 /// to the bodies that a closure picks, such as those of a layer, and
 /// [`Among::without_pairs`](crate::Among::without_pairs) leaves out pairs, such as those of neighbouring links.
+#[doc(alias("world", "broad_phase", "query_pipeline", "collision_world", "compound", "trimesh"))]
 #[derive(Clone, Debug)]
 pub struct Scene<S: SupportMap> {
     bodies: Vec<Option<Body<S>>>,
@@ -235,6 +236,7 @@ impl<V: Vector> Scene<Triangle<V>> {
     /// # Errors
     /// [`SceneError::NoSuchVertex`] if an index is that of no vertex; [`SceneError::NotFinite`] if a coordinate of a
     /// triangle is not finite.
+    #[doc(alias("trimesh", "triangle_mesh"))]
     pub fn mesh(vertices: &[V], triangles: &[[usize; 3]]) -> Result<Self, SceneError> {
         let mut bodies = Vec::with_capacity(triangles.len());
         for (triangle, corners) in triangles.iter().enumerate() {

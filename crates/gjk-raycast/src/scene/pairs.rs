@@ -15,6 +15,7 @@ impl<S: SupportMap> Among<'_, S> {
     /// Finds all pairs of bodies that are no farther than `within` from each other by [`distance`](crate::distance()).
     /// Writes them into `pairs`, which is emptied first, in the order of their indices. Half-spaces make no pairs with
     /// each other.
+    #[doc(alias("clash_detection", "interference", "broad_phase"))]
     pub fn pairs_within(
         &self,
         within: ScalarOf<S>,

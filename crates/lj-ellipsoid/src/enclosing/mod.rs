@@ -96,6 +96,7 @@ impl<const N: usize> Enclosing<N> {
 /// assert!(square.iter().all(|&corner| answer.ellipsoid.contains(corner)));
 /// # Ok::<(), lj_ellipsoid::EnclosingError>(())
 /// ```
+#[doc(alias("mvee", "lowner_john", "min_volume_ellipsoid", "bounding_ellipsoid", "d_optimal"))]
 pub fn enclosing<P: Into<[f64; N]> + Copy + Sync, const N: usize>(
     points: &[P],
     options: EnclosingOptions,

@@ -106,6 +106,7 @@ impl<const N: usize> Inscribed<N> {
 /// assert!((answer.ellipsoid.semi_axes()[0] - 2.0).abs() < 1e-9);
 /// # Ok::<(), lj_ellipsoid::InscribedError>(())
 /// ```
+#[doc(alias("john_ellipsoid", "max_volume_ellipsoid", "largest_ellipsoid"))]
 pub fn inscribed<const N: usize>(
     halfspaces: &[HalfSpace<N>],
     options: InscribedOptions,

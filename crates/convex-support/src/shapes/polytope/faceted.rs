@@ -44,6 +44,7 @@ use crate::{
 /// assert!((crossing.normal - DVec3::ONE.normalize()).length() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("half_spaces", "polyhedron"))]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Faceted<V: Vector> {
     polytope: Polytope<V>,

@@ -57,6 +57,7 @@ pub(crate) use planes::{Planes, facet};
 /// # Ties
 /// If several points are equally far along a direction, to the last bit of the dot products computed relative to the
 /// middle, the answer is the first of them in [`points`](Self::points), unless it was found by climbing.
+#[doc(alias("convex_hull", "polygon", "polyhedron", "convex_mesh"))]
 #[derive(Clone, PartialEq)]
 pub struct Polytope<V: Vector> {
     points: Vec<V>,
