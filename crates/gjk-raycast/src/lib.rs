@@ -213,8 +213,8 @@ pub use ray_exit::{RayExit, ray_exit};
 pub use scene::among::Among;
 pub use scene::{
     Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, Scene, SceneAnyHit,
-    SceneCast, SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast,
-    SceneSignedDistance, Work,
+    SceneAnyWithin, SceneCast, SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, ScenePair,
+    SceneRayCast, SceneSignedDistance, Work,
 };
 pub use separation::{Distance, SignedDistance, SignedDistanceOptions};
 pub use signed_distance::{signed_distance, signed_distance_with};

@@ -6,7 +6,7 @@ use num_traits::Float as _;
 
 use super::frame::{CoarseUnit, Frame};
 use super::node::Boxes;
-use crate::glam::Vec4;
+use crate::glam::{Vec3A, Vec4};
 use crate::numerics::range::{is_comfortable, power_of_two_below};
 use crate::{Aabb, Scalar, Vector};
 
@@ -223,9 +223,7 @@ impl<V: Vector> Bound<V> for BoxDistance<V> {
 
     #[inline]
     fn coarse(&self, frame: &Frame<V>) -> CoarseBoxDistance<V> {
-        let of = frame.outwards(&self.of);
-        let of = core::array::from_fn(|i| [of.min[i], of.max[i]].map(Vec4::splat));
-        CoarseBoxDistance { of, unit: frame.unit(), space: PhantomData }
+        CoarseBoxDistance::seen(&frame.outwards(&self.of), frame.unit())
     }
 }
 
@@ -236,6 +234,15 @@ pub struct CoarseBoxDistance<V> {
     of: [[Vec4; 2]; 3],
     unit: CoarseUnit,
     space: PhantomData<V>,
+}
+
+impl<V> CoarseBoxDistance<V> {
+    /// The distance from a box in the frame of the tree.
+    #[inline(always)]
+    pub(super) fn seen(of: &Aabb<Vec3A>, unit: CoarseUnit) -> Self {
+        let of = core::array::from_fn(|i| [of.min[i], of.max[i]].map(Vec4::splat));
+        Self { of, unit, space: PhantomData }
+    }
 }
 
 impl<V: Vector> CoarseBound for CoarseBoxDistance<V> {

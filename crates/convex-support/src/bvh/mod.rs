@@ -4,6 +4,7 @@ mod bound;
 mod build;
 mod change;
 mod frame;
+mod nearest_pairs;
 mod node;
 mod outer_box;
 pub(crate) mod pairs;
@@ -15,6 +16,7 @@ use crate::{Aabb, Vector};
 
 pub use self::bound::{Bound, BoxDistance, CoarseBound, CoarseBoxDistance, CoarseSweptBox, SweptBox};
 pub use self::frame::{CoarseUnit, Frame};
+pub use self::nearest_pairs::NearestPairs;
 pub use self::node::{Boxes, WIDTH};
 use self::node::{Node, Slot};
 pub use self::outer_box::outer_box;
@@ -26,7 +28,8 @@ pub use self::outer_box::outer_box;
 ///
 /// [`search`](Self::search) finds the items that a question concerns, by a [`Bound`], nearest first;
 /// [`within`](Self::within) finds them in any order. [`pairs_within`](Self::pairs_within) and
-/// [`pairs_between`](Self::pairs_between) find pairs of boxes that are near each other.
+/// [`pairs_between`](Self::pairs_between) find pairs of boxes that are near each other, and
+/// [`nearest_pairs`](Self::nearest_pairs) the nearest ones first.
 ///
 /// A node holds the boxes of its four children side by side, in single precision and in the coordinates of a
 /// [`Frame`], so that one pass of arithmetic bounds all four. A child is a node or an item. The items that a question

@@ -16,7 +16,7 @@ pub struct Boxes {
 }
 
 impl Boxes {
-    const EMPTY: Self = Self { planes: [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 3] };
+    pub(super) const EMPTY: Self = Self { planes: [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 3] };
 
     /// The smallest values of coordinate `axis`, by child.
     ///
@@ -78,7 +78,7 @@ impl Boxes {
 }
 
 /// A child in four bytes: nothing, an item, or a node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Link(u32);
 
 /// The kinds of a [`Link`].
@@ -143,7 +143,19 @@ impl Link {
         u64::from(bound.to_bits()) << 32 | u64::from(self.0)
     }
 
+    /// The same in the descending order of the bounds.
+    #[inline(always)]
+    pub(super) fn after_descending(self, bound: f32) -> u64 {
+        u64::from(!bound.to_bits()) << 32 | u64::from(self.0)
+    }
+
     /// The bound and the link in such a number.
+    #[inline(always)]
+    pub(super) fn with_bound_descending(number: u64) -> (Self, f32) {
+        (Self(number as u32), f32::from_bits(!((number >> 32) as u32)))
+    }
+
+    /// The bound and the link in a number in ascending order.
     #[inline(always)]
     pub(super) fn with_bound(number: u64) -> (Self, f32) {
         (Self(number as u32), f32::from_bits((number >> 32) as u32))

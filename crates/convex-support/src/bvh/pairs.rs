@@ -18,14 +18,14 @@ const PAIR_STACK: usize = (WIDTH * WIDTH + WIDTH) * MAX_DEPTH;
 /// need be.
 #[derive(Clone, Copy, Debug)]
 pub struct PairSearch<'t, V: Vector> {
-    a: &'t Bvh<V>,
-    b: &'t Bvh<V>,
+    pub(super) a: &'t Bvh<V>,
+    pub(super) b: &'t Bvh<V>,
     /// Whether both trees are the same one, so that each pair counts once.
-    same: bool,
+    pub(super) same: bool,
     distance: V::Scalar,
     /// At least the distance, in the frames of the trees.
     rooms: [f32; 2],
-    start: Pair,
+    pub(super) start: Pair,
 }
 
 /// How many pairs of items are found before their own boxes are tested: one after the other and without a branch, so
@@ -33,10 +33,10 @@ pub struct PairSearch<'t, V: Vector> {
 const PAIR_BATCH: usize = 4 * WIDTH * WIDTH;
 
 /// A child of the first tree and one of the second.
-type Pair = (Link, Link);
+pub(super) type Pair = (Link, Link);
 
 #[inline(always)]
-fn are_items((a, b): Pair) -> bool {
+pub(super) fn are_items((a, b): Pair) -> bool {
     a.is_item() & b.is_item()
 }
 
@@ -56,7 +56,7 @@ impl<V: Vector> Bvh<V> {
 
     /// The box of a child, which is not the root, in the tree's frame.
     #[inline]
-    fn seen(&self, child: Child) -> Aabb<Vec3A> {
+    pub(super) fn seen(&self, child: Child) -> Aabb<Vec3A> {
         let slot = match child {
             Child::Item(item) => self.slots[item],
             Child::Node(node) => self.nodes[node].parent,
@@ -133,7 +133,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
     }
 
     /// Boxes of the first tree in the frame of the second.
-    fn as_b_sees(&self, boxes: &Boxes) -> Boxes {
+    pub(super) fn as_b_sees(&self, boxes: &Boxes) -> Boxes {
         let mut seen = *boxes;
         for lane in 0..WIDTH {
             seen.set(lane, self.b.frame.outwards_from(&self.a.frame, &boxes.get(lane)));

@@ -165,7 +165,7 @@ pub(super) fn finite<S: Scalar>(limit: S) -> Option<S> {
 
 /// The coarse limit for a limit. A bound equal to the largest number may stand for a larger one.
 #[inline]
-fn coarse_limit<S: Scalar>(coarse: &impl CoarseBound, limit: S) -> f32 {
+pub(super) fn coarse_limit<S: Scalar>(coarse: &impl CoarseBound, limit: S) -> f32 {
     coarse.limit(if limit < S::max_value() { limit.as_f64() } else { f64::INFINITY })
 }
 

@@ -196,6 +196,45 @@ pub struct PairDistance<V: Vector> {
     pub distance: Distance<V>,
 }
 
+/// The answer of [`Among::nearest_between`](crate::Among::nearest_between) and
+/// [`Among::least_pair`](crate::Among::least_pair).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
+pub struct ScenePair<V: Vector> {
+    /// The nearest pair; `None` if none is within the limit. Of pairs equally near, it is the one with the lowest first
+    /// index, and of these the one with the lowest second index.
+    pub nearest: Option<PairDistance<V>>,
+    /// No pair is nearer than this: the least of the limit and of the lower ends of all brackets.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub lower: V::Scalar,
+    /// What was done and what was left out.
+    pub work: Work,
+}
+
+/// Whether anything is within a distance. `I` is the index of a body, or the indices of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SceneAnyWithin<I> {
+    /// Whether any body or pair is.
+    pub any: bool,
+    /// If none is certainly within, the lowest of those whose bracket contains the distance.
+    pub undecided: Option<I>,
+    /// What was done and what was left out. It depends on which of several was tested first.
+    pub work: Work,
+}
+
+impl<I> SceneAnyWithin<I> {
+    /// Whether the answer is certain: that there is one, if the bracket of one says so, and that there is none, if the
+    /// brackets of all do.
+    #[must_use]
+    pub const fn is_certain(&self) -> bool {
+        self.undecided.is_none() && !self.work.cancelled
+    }
+}
+
 /// A body, and its contact with a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

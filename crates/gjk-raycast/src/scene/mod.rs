@@ -7,6 +7,7 @@ mod bounds;
 mod contacts;
 mod hits;
 mod nearest;
+mod nearest_pair;
 mod pairs;
 
 use alloc::vec::Vec;
@@ -18,8 +19,9 @@ use convex_support::{Aabb, Bvh, SupportMap, Triangle, Vector, Vector3, outer_box
 use crate::HalfSpace;
 
 pub use self::answers::{
-    BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, SceneAnyHit, SceneCast,
-    SceneDistance, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, SceneSignedDistance, Work,
+    BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, SceneAnyHit, SceneAnyWithin,
+    SceneCast, SceneDistance, SceneHits, SceneLinearCast, SceneMotionCast, ScenePair, SceneRayCast,
+    SceneSignedDistance, Work,
 };
 pub use self::body::Body;
 

@@ -160,6 +160,6 @@ impl<S: SupportMap> Among<'_, S> {
 }
 
 /// How far boxes are from that of a shape; nowhere, of a shape of which a number is not finite.
-fn distance_of<A: SupportMap + ?Sized>(shape: &A) -> BoxDistance<A::Vector> {
+pub(super) fn distance_of<A: SupportMap + ?Sized>(shape: &A) -> BoxDistance<A::Vector> {
     BoxDistance::new(outer_box(shape).unwrap_or_else(Aabb::everything))
 }

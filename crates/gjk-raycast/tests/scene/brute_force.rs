@@ -3,7 +3,7 @@
 use convex_support::{SupportMap, Vector};
 use gjk_raycast::{
     Body, BodyContact, BodyDistance, Contact, Distance, DistanceOptions, LinearCast, LinearCastOptions, Motion,
-    MotionCast, MotionCastOptions, PairContact, PairDistance, Ray, RayCast, RayCastOptions, RigidMotion,
+    MotionCast, MotionCastOptions, PairContact, PairDistance, Ray, RayCast, RayCastOptions, RigidMotion, Scene,
     SignedDistanceOptions, contact, distance, linear_cast, motion_cast, ray_cast,
 };
 
@@ -68,6 +68,23 @@ pub(crate) fn pairs<V: Space>(world: &World<V>, within: V::Scalar) -> Vec<PairDi
     found
 }
 
+/// The distances of all pairs of a body of one scene and one of another, but for two half-spaces.
+pub(crate) fn distances_between<V: Space>(first: &Scene<Shape<V>>, second: &Scene<Shape<V>>) -> Vec<PairDistance<V>> {
+    let mut found = Vec::new();
+    for (a, one) in first.iter() {
+        for (b, other) in second.iter() {
+            let distance = match (one, other) {
+                (Body::Convex(one), Body::Convex(other)) => distance(one, other, DistanceOptions::default()),
+                (Body::Convex(one), Body::HalfSpace(other)) => other.distance_from(one),
+                (Body::HalfSpace(one), Body::Convex(other)) => one.distance_from(other).reversed(),
+                (Body::HalfSpace(_), Body::HalfSpace(_)) => continue,
+            };
+            found.push(PairDistance { a, b, distance });
+        }
+    }
+    found
+}
+
 /// The contacts of all pairs of bodies, but for two half-spaces.
 pub(crate) fn contacts<V: Space>(world: &World<V>, within: V::Scalar) -> Vec<PairContact<V>> {
     let mut found = Vec::new();
@@ -95,7 +112,7 @@ pub(crate) fn contacts_of<V: Space>(world: &World<V>, shape: &Shape<V>, within: 
 /// The pairs without half-spaces.
 pub(crate) fn bounded<V: Vector, S: SupportMap<Vector = V>>(
     pairs: &[PairDistance<V>],
-    scene: &gjk_raycast::Scene<S>,
+    scene: &Scene<S>,
 ) -> Vec<PairDistance<V>> {
     let is_bounded = |index| scene.get(index).is_some_and(|body| body.convex().is_some());
     pairs.iter().copied().filter(|pair| is_bounded(pair.a) && is_bounded(pair.b)).collect()

@@ -2,8 +2,8 @@
 
 use convex_support::{AngularVelocity as _, Rotation as _, Scalar, bounding_box};
 use gjk_raycast::{
-    BodyHit, CastMethod, DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Outcome, Ray, RayCastOptions,
-    RigidMotion, SceneRayCast, SignedDistanceOptions, StartInContact, Status, SubAlgorithm,
+    BodyHit, CastMethod, DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Outcome, PairDistance, Ray,
+    RayCastOptions, RigidMotion, SceneRayCast, SignedDistanceOptions, StartInContact, Status, SubAlgorithm,
 };
 use num_traits::Float;
 
@@ -54,6 +54,7 @@ pub(crate) fn ask<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut
     motion_cast(world, numbers, count);
     pairs(world, numbers, count);
     contacts(world, numbers, count);
+    nearest_pairs(world, numbers, count);
 }
 
 /// A length at the scale of the world, and a point in it or about.
@@ -441,4 +442,90 @@ fn contacts<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count
     assert_eq!(of_shape, brute_force::contacts_of(world, &shape, within), "kind {}, within {within}", world.kind);
     assert_eq!(work.tested + work.culled, world.scene.len(), "every body is one or the other");
     count.questions += 3;
+}
+
+/// The nearest pair within one scene and of two, and whether any is near, with all bodies or some.
+fn nearest_pairs<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
+    let (size, _) = scale(world, numbers);
+    let others = super::worlds::world::<V>(numbers, world.kind).scene;
+    let all = brute_force::distances_between(&world.scene, &others);
+    let own: Vec<_> =
+        brute_force::distances_between(&world.scene, &world.scene).into_iter().filter(|pair| pair.a < pair.b).collect();
+    let every = numbers.below(3) > 0;
+    let picked = |index: usize| every || index.is_multiple_of(2);
+    let left_out = |a: usize, b: usize| !every && (a + b).is_multiple_of(3);
+    let questions = world.scene.among(&picked);
+    let questions = questions.without_pairs(&left_out);
+    let options = DistanceOptions::default();
+    let least = [&all, &own]
+        .map(|pairs| pairs.iter().map(|pair| pair.distance.distance).fold(V::Scalar::infinity(), Float::min));
+    for (pairs, least, is_own) in [(&all, least[0], false), (&own, least[1], true)] {
+        let counts =
+            |pair: &&PairDistance<V>| picked(pair.a) && (!is_own || picked(pair.b)) && !left_out(pair.a, pair.b);
+        let pairs: Vec<_> = pairs.iter().filter(counts).copied().collect();
+        let some = V::Scalar::from_f64(size * numbers.unit());
+        // None, a pair exactly at the limit, a limit that no distance is within.
+        let limits = [V::Scalar::infinity(), some, least, V::Scalar::nan(), V::Scalar::ZERO, -some];
+        for limit in [limits[0], limits[1 + numbers.below(5)]] {
+            let ask = |options| {
+                if is_own { questions.least_pair(options) } else { questions.nearest_between(&others, options) }
+            };
+            let answer = ask(options.with_limit(limit));
+            let end = if limit.is_nan() { V::Scalar::infinity() } else { limit };
+            let near = pairs.iter().filter(|pair| pair.distance.distance <= end).copied();
+            let due = near.reduce(|a, b| if b.distance.distance < a.distance.distance { b } else { a });
+            assert_eq!(answer.nearest, due, "kind {}, own {is_own}, within {limit}", world.kind);
+            let lower = pairs.iter().map(|pair| pair.distance.lower).fold(end, Float::min);
+            // Boxes may know better, and no more than the distance.
+            let most = due.map_or(end, |due| due.distance.distance);
+            assert!(lower <= answer.lower && answer.lower <= most, "{lower} {} {most}", answer.lower);
+            assert!(answer.work.tested <= pairs.len(), "each pair once");
+            count.tested += answer.work.tested;
+            count.culled += answer.work.culled;
+            #[cfg(feature = "rayon")]
+            {
+                let options = options.with_limit(limit);
+                let parallel = if is_own {
+                    questions.par_least_pair(options)
+                } else {
+                    questions.par_nearest_between(&others, options)
+                };
+                assert_eq!((parallel.nearest, parallel.lower), (answer.nearest, answer.lower), "on all threads");
+                assert_eq!(
+                    parallel.work.tested + parallel.work.culled,
+                    answer.work.tested + answer.work.culled,
+                    "all pairs"
+                );
+            }
+            let any = if is_own {
+                questions.any_pair_within(limit, options)
+            } else {
+                questions.any_pair_between(&others, limit, options)
+            };
+            assert_eq!(any.any, pairs.iter().any(|pair| pair.distance.distance <= limit), "any within {limit}");
+            let is_sure = pairs.iter().any(|pair| pair.distance.upper <= limit);
+            let open = |pair: &&PairDistance<V>| pair.distance.lower <= limit && limit < pair.distance.upper;
+            let open = pairs.iter().find(open).map(|pair| [pair.a, pair.b]);
+            assert!(
+                if is_sure { any.is_certain() } else { any.undecided.is_none() || any.undecided >= open },
+                "{any:?}"
+            );
+        }
+        let stopped = if is_own {
+            questions.until(&|| true).least_pair(options)
+        } else {
+            questions.until(&|| true).nearest_between(&others, options)
+        };
+        let is_empty = pairs.is_empty();
+        assert_eq!((stopped.nearest, stopped.work.tested, stopped.work.cancelled), (None, 0, !is_empty), "at once");
+        count.questions += 4;
+    }
+    // Of one shape.
+    let shape = body::<V>(numbers, world.kind, 1);
+    let within = V::Scalar::from_f64(size * [0.0, 0.1, 1.0][numbers.below(3)]);
+    let any = world.scene.all().any_within(&shape, within, options);
+    let near = brute_force::distances(world, &shape);
+    assert_eq!(any.any, near.iter().any(|near| near.distance.distance <= within), "any within {within} of a shape");
+    assert_eq!(any.work.tested + any.work.culled, world.scene.len(), "every body is one or the other");
+    count.questions += 1;
 }

@@ -1,0 +1,148 @@
+//! Pairs of items, of one tree or of two, in the order of the distance of their boxes (branch and bound, best first).
+//! [`PairSearch::visit`] is quicker for all pairs within a distance that is known beforehand.
+
+use alloc::collections::BinaryHeap;
+use alloc::vec::Vec;
+
+use super::Bvh;
+use super::bound::{Bound, BoxDistance, CoarseBound, CoarseBoxDistance};
+use super::node::{Boxes, Child, Link, WIDTH};
+use super::pairs::{Pair, PairSearch, are_items};
+use super::search::{coarse_limit, finite};
+use crate::glam::Vec3A;
+use crate::{Aabb, Vector};
+
+/// The pairs of items, mostly the nearest boxes first, of which [`next`](Self::next) tells one after the other.
+///
+/// ```
+/// use convex_support::{Aabb, Bvh, glam::DVec2};
+///
+/// let square = |x: f64| Aabb { min: DVec2::new(x, 0.0), max: DVec2::new(x + 1.0, 1.0) };
+/// let (a, b) = (Bvh::new(&[square(0.0), square(9.0)]), Bvh::new(&[square(4.0), square(12.0)]));
+/// let mut pairs = a.nearest_pairs(&b);
+/// let (pair, bound) = pairs.next(f64::INFINITY).ok_or("two by two squares")?;
+/// assert_eq!(pair, [1, 1]);
+/// assert!(bound <= 2.0 && bound > 1.999_999); // conservative: rounded towards zero
+/// assert!(pairs.next(bound).is_none()); // all others are farther
+/// # Ok::<(), &str>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct NearestPairs<'t, V: Vector> {
+    among: PairSearch<'t, V>,
+    /// The pairs still to be looked into, each as a number with the second of the pair: the least bound on top, and of
+    /// equals the deepest, so that the first pair of items is found soon where all boxes overlap.
+    queue: BinaryHeap<(u64, Link)>,
+    nodes: usize,
+}
+
+impl<V: Vector> Bvh<V> {
+    /// The pairs of an item of this tree and one of `other` in the order of the distance of their boxes.
+    #[must_use]
+    pub fn nearest_pairs<'t>(&'t self, other: &'t Self) -> NearestPairs<'t, V> {
+        NearestPairs::new(self.pairs_between(other, V::Scalar::default()))
+    }
+
+    /// The pairs of different items, each once, in the order of the distance of their boxes.
+    #[must_use]
+    pub fn nearest_pairs_within(&self) -> NearestPairs<'_, V> {
+        NearestPairs::new(self.pairs_within(V::Scalar::default()))
+    }
+}
+
+impl<'t, V: Vector> NearestPairs<'t, V> {
+    fn new(among: PairSearch<'t, V>) -> Self {
+        let mut pairs = Self { among, queue: BinaryHeap::new(), nodes: 0 };
+        pairs.push(0.0, among.start);
+        pairs
+    }
+
+    /// The next pair whose boxes are at most `limit` apart, with a lower bound on their distance. `None` if there is no
+    /// other, or if the limit is negative or NaN. The limit must not grow from one call to the next.
+    pub fn next(&mut self, limit: V::Scalar) -> Option<([usize; 2], V::Scalar)> {
+        let limit = finite(limit)?;
+        let nowhere = Boxes::EMPTY.get(0);
+        let end = coarse_limit(&self.coarse(&nowhere), limit);
+        while let Some((number, b)) = self.queue.pop() {
+            let (a, bound) = Link::with_bound_descending(number);
+            if bound > end {
+                break;
+            }
+            if are_items((a, b)) {
+                let pair = [a.index(), b.index()];
+                let bound = BoxDistance::new(self.among.a.boxes[pair[0]]).bound(&self.among.b.boxes[pair[1]]);
+                if bound <= limit {
+                    return Some((pair, bound));
+                }
+            } else {
+                self.nodes += 1;
+                self.expand((a, b), end);
+            }
+        }
+        self.queue.clear();
+        None
+    }
+
+    /// The number of pairs of nodes, or of a node and an item, that were tested so far.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        self.nodes
+    }
+
+    /// What is still to be searched, in so many parts of about equal promise, for as many threads.
+    #[must_use]
+    pub fn deal(self, parts: usize) -> Vec<Self> {
+        let mut dealt: Vec<_> =
+            (0..parts.max(1)).map(|_| Self { queue: BinaryHeap::new(), nodes: 0, ..self }).collect();
+        dealt[0].nodes = self.nodes;
+        for (i, pair) in self.queue.into_sorted_vec().into_iter().rev().enumerate() {
+            dealt[i % parts.max(1)].queue.push(pair);
+        }
+        dealt
+    }
+
+    fn push(&mut self, bound: f32, (a, b): Pair) {
+        self.queue.push((a.after_descending(bound), b));
+    }
+
+    /// The bound for a box in the frame of the second tree.
+    #[inline(always)]
+    fn coarse(&self, around: &Aabb<Vec3A>) -> CoarseBoxDistance<V> {
+        CoarseBoxDistance::seen(around, self.among.b.frame.unit())
+    }
+
+    /// Queues the pairs of children of a pair, but for those that are farther apart than the coarse limit `end`.
+    #[inline]
+    fn expand(&mut self, (a, b): Pair, end: f32) {
+        let PairSearch { a: first, b: second, same, .. } = self.among;
+        let (mut boxes, firsts) = first.parts(a);
+        if !same {
+            boxes = self.among.as_b_sees(&boxes);
+        }
+        let (others, seconds) = second.parts(b);
+        let is_one = same && a == b;
+        for (lane, &first) in firsts.iter().enumerate().filter(|(_, link)| **link != Link::NONE) {
+            let bounds = self.coarse(&boxes.get(lane)).bounds(&others).to_array();
+            // A pair counts once, and an item makes none with itself.
+            let from = if is_one { lane + usize::from(first.is_item()) } else { 0 };
+            for (&second, bound) in seconds.iter().zip(bounds).skip(from) {
+                if bound <= end && second != Link::NONE {
+                    self.push(bound, (first, second));
+                }
+            }
+        }
+    }
+}
+
+impl<V: Vector> Bvh<V> {
+    /// The children of a node with their boxes; or an item by itself.
+    #[inline]
+    fn parts(&self, link: Link) -> (Boxes, [Link; WIDTH]) {
+        if let Child::Node(node) = link.child() {
+            return (self.nodes[node].boxes, self.nodes[node].children);
+        }
+        let (mut boxes, mut links) = (Boxes::EMPTY, [Link::NONE; WIDTH]);
+        boxes.set(0, self.seen(link.child()));
+        links[0] = link;
+        (boxes, links)
+    }
+}
