@@ -138,8 +138,16 @@ fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
 ) -> Distance<A::Vector> {
     let shapes = Both::<_, _>::new(a, b);
     let cores = shapes.cores();
+    let mut near = None;
     // What is deep is left to the search.
-    let known = direct(&shapes, cores, options.max_iterations, observer).filter(|known| !known.overlap);
+    let known = direct(&shapes, cores, options.max_iterations, observer, |cores, points| {
+        near = options.rare.0.and_then(|rare| (rare.in_double)(&shapes, cores, points));
+        near
+    })
+    .filter(|known| !known.overlap);
+    if let Some(near) = near.filter(|near| near.upper > Scalar::ZERO) {
+        return near_distance(near, cores.map(|core| core.radius));
+    }
     if let Some(SignedDistance {
         signed_distance, lower, upper, normal, point_a, point_b, status, iterations, ..
     }) = known
@@ -151,6 +159,27 @@ fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     let [core_a, core_b] = cores;
     let (shapes, cores) = shapes.in_order([&core_a, &core_b]);
     by_search(&shapes, cores, shapes.is_swapped, options, observer)
+}
+
+/// The distance of shapes near contact that are not certain to overlap. If they may touch, their points are moved to
+/// where they coincide but for rounding, each by the share of its own radius.
+#[inline(never)]
+fn near_distance<V: Vector>(near: SignedDistance<V>, [a, b]: [V::Scalar; 2]) -> Distance<V> {
+    let SignedDistance { signed_distance, lower, upper, normal, point_a, point_b, status, iterations, .. } = near;
+    let zero = V::Scalar::ZERO;
+    let overlap = !(lower > zero);
+    let between = if overlap { normal * (signed_distance / (a + b)) } else { V::ZERO };
+    Distance {
+        distance: signed_distance.max(zero),
+        lower: lower.max(zero),
+        upper,
+        overlap,
+        point_a: point_a - between * a,
+        point_b: point_b + between * b,
+        normal: Some(normal),
+        status,
+        iterations,
+    }
 }
 
 compiled_once! {

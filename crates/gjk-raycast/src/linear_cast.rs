@@ -305,20 +305,25 @@ fn answer<V: Vector>(
         && options.start_in_contact == StartInContact::Report
         && let Some(rare) = options.rare.0
     {
+        start.slack = rounding_of_places(cores);
         (rare.touch)(&start, &mut answer);
     }
     if options.start_in_contact == StartInContact::IfDeeper {
-        let [core_a, core_b] = cores;
-        let sizes = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
-        let far = core_a.origin.norm() + core_b.origin.norm();
-        // By powers of two that are less than 1, so that nothing overflows.
-        let units = |number: f64| V::Scalar::EPSILON * Scalar::from_f64(number);
-        let stated = (core_a.error + core_b.error) * Scalar::from_f64(NEAR_OF_STATED);
-        start.slack = sizes * units(MAY_TOUCH) + far * units(NEAR_OF_FAR) + stated;
+        start.slack = rounding_of_places(cores);
         only_if_deeper(&mut answer, &start, options);
     }
     answer.status = answer.status.of(&answer.outcome, answer.is_certain());
     answer
+}
+
+/// How far apart, or how deep in one another, shapes may be found that are in contact but for rounding.
+fn rounding_of_places<V: Vector>([core_a, core_b]: &[Core<V>; 2]) -> V::Scalar {
+    let sizes = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
+    let far = core_a.origin.norm() + core_b.origin.norm();
+    // By powers of two that are less than 1, so that nothing overflows.
+    let units = |number: f64| V::Scalar::EPSILON * Scalar::from_f64(number);
+    let stated = (core_a.error + core_b.error) * Scalar::from_f64(NEAR_OF_STATED);
+    sizes * units(MAY_TOUCH) + far * units(NEAR_OF_FAR) + stated
 }
 
 /// The ray of `b` in the frame of `a`, with its options.

@@ -172,8 +172,9 @@ pub struct Impact<V: Vector> {
     /// distance](crate::LinearCastOptions::target_distance) it is a point of `b`. If the bodies overlap at the start,
     /// it is a point in both but for rounding, as in [`distance`](crate::distance).
     pub point: V,
-    /// The unit normal of contact, out of `b` towards `a`. If the bodies overlap at the start by more than rounding, it
-    /// is `None`; with [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.
+    /// The unit normal of contact, out of `b` towards `a`. If the bodies overlap at the start by more than rounding (16ε
+    /// of their sizes, 4ε of their distances from the origin, and four times the errors that they state), it is `None`;
+    /// with [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.
     pub normal: Option<V>,
 }
 

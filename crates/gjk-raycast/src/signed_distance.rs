@@ -69,7 +69,10 @@ fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
 ) -> SignedDistance<A::Vector> {
     let shapes = Both::<_, _>::new(a, b);
     let cores = shapes.cores();
-    direct(&shapes, cores, options.max_iterations, observer).unwrap_or_else(|| {
+    direct(&shapes, cores, options.max_iterations, observer, |cores, points| {
+        (RareInDistances::WITH_DEPTH.in_double)(&shapes, cores, points)
+    })
+    .unwrap_or_else(|| {
         // In variables of their own, so that the closed form has them in registers.
         let [core_a, core_b] = cores;
         let (shapes, cores) = shapes.in_order([&core_a, &core_b]);
@@ -144,7 +147,7 @@ pub(crate) fn rough_signed_distance<V: Vector>(
     rare: Option<&'static RareInDistances<V>>,
 ) -> SignedDistance<V> {
     let parts = shapes.cores();
-    direct(shapes, parts, options.max_iterations, &mut Observer::none()).unwrap_or_else(|| {
+    direct(shapes, parts, options.max_iterations, &mut Observer::none(), |_, _| None).unwrap_or_else(|| {
         let mut cores = Cores::new(shapes, parts.each_ref());
         let wanted = Wanted::new(OfOverlap::RoughDepth, options, rare);
         separation::<_, true>(&mut cores, &wanted, &mut Observer::none()).signed_distance(&cores, &wanted)

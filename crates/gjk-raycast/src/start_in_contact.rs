@@ -43,7 +43,7 @@ pub(crate) struct StartingPair<'s, V: Vector> {
     pub(crate) velocities: [V; 2],
     /// How far apart they count as touching.
     pub(crate) target: V::Scalar,
-    /// How much less, or more, may be rounding.
+    /// How much less, or more, may be rounding of their places. Shapes that are deeper by no more only touch.
     pub(crate) slack: V::Scalar,
     /// A first guess of the direction from `b` to `a`.
     pub(crate) axis: Option<V>,
@@ -73,14 +73,14 @@ impl<V: Vector> StartingPair<'_, V> {
         let at_start = distance_of_any(self.a, self.b, wanted.with_sub_algorithm(self.sub_algorithm));
         answer.iterations += at_start.iterations;
         let max_iterations = left(answer.iterations);
-        let start = StartingPair { max_iterations, ..*self }.signed_distance(zero);
+        let enough = (self.slack - self.target).max(zero);
+        let start = StartingPair { max_iterations, ..*self }.signed_distance(enough);
         answer.iterations += start.iterations;
-        let only_touches = start.upper >= self.target;
-        if !only_touches {
-            // They are certainly deeper than touching, whatever the motion.
+        if start.upper < self.target {
+            // They certainly have points in common, whatever the motion.
             (answer.upper, answer.status) = (zero, Status::Converged);
         }
-        let normal = only_touches.then_some(start.normal);
+        let normal = (start.upper >= self.target - self.slack).then_some(start.normal);
         answer.outcome = Outcome::Hit(Impact { time: zero, point: at_start.point_b, normal });
     }
 

@@ -124,7 +124,9 @@ pub(super) fn settle_end<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodie
     let Some(near) = near_contact_of(&WithoutLines(&a), &WithoutLines(&b), max_iterations) else { return };
     cast.iterations += near.iterations;
     let closing = dot_minus((0..V::DIM).map(|i| (near.normal.get(i), direction.get(i))), zero);
-    if near.is_separated() && closing > zero && near.lower * near.frame.scale > lost + lost {
+    // A hit at the end belongs to the ray, and so does one that is later by no more than its own rounding.
+    let rounded = lost + lost + roundings(2.0, closing * end);
+    if near.is_separated() && closing > zero && near.lower * near.frame.scale > rounded {
         cast.miss(-near.normal);
     } else if lost == zero && (near.overlaps_certainly || near.upper <= zero) {
         cast.upper = end;

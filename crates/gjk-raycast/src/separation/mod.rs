@@ -23,7 +23,7 @@ pub(crate) use cores::Cores;
 use cores::error_of_points;
 pub use distances::{Distance, SignedDistance, SignedDistanceOptions};
 pub(crate) use near::{FromContact, NearContact, ProjectedFace, Uncertainty, across_corners};
-pub(crate) use near::{look_after, near_contact_of, room_within};
+pub(crate) use near::{in_double, look_after, near_contact_of, room_within};
 
 /// The question about two bodies, and when the search may stop.
 pub(crate) struct Wanted<V: Vector> {
@@ -41,13 +41,17 @@ pub(crate) struct Wanted<V: Vector> {
 #[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct RareInDistances<V: Vector> {
     look_near: fn(&mut Cores<'_, V>, &Wanted<V>, Option<&Gjk<V>>) -> bool,
+    pub(crate) in_double: fn(&dyn Shapes<Vector = V>, [&Core<V>; 2], &PointPair<V>) -> Option<SignedDistance<V>>,
     /// The depth, where it is asked for.
     reach_closely: Option<fn(&mut Cores<'_, V>, &Wanted<V>, &mut Gjk<V>, End, &mut Observer<'_, V>) -> Separation<V>>,
 }
 
 impl<V: Vector> RareInDistances<V> {
-    pub(crate) const TABLE: Self =
-        Self { look_near: |cores, wanted, state| cores.look_near(wanted, state), reach_closely: None };
+    pub(crate) const TABLE: Self = Self {
+        look_near: |cores, wanted, state| cores.look_near(wanted, state),
+        in_double: |shapes, cores, points| in_double(shapes, cores, points),
+        reach_closely: None,
+    };
 }
 
 /// The question about bodies that overlap.
@@ -344,7 +348,7 @@ pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
 
 /// The signed distance of shapes whose cores are apart by more than a few errors, and whose closest points are known
 /// in closed form, such as a ball and a box, whether they overlap or not. There is nothing to search, and everything
-/// is computed in the world's unit. Near contact they are measured again.
+/// is computed in the world's unit. Near contact they are measured again, in single precision at once.
 ///
 /// The plane of the support point across the vector between those points is as far as they are, to rounding;
 /// otherwise the search takes over.
@@ -354,6 +358,7 @@ pub(crate) fn direct<T: Shapes + ?Sized>(
     cores: [Core<T::Vector>; 2],
     max_iterations: usize,
     observer: &mut Observer<'_, T::Vector>,
+    in_double: impl FnOnce([&Core<T::Vector>; 2], &PointPair<T::Vector>) -> Option<SignedDistance<T::Vector>>,
 ) -> Option<SignedDistance<T::Vector>> {
     let mut pair = Pair::new(shapes, cores.each_ref());
     let offset = pair.core_a.origin - pair.core_b.origin;
@@ -363,9 +368,21 @@ pub(crate) fn direct<T: Shapes + ?Sized>(
     let (length, radius, error) = (v.length(), pair.radius(), error_of_points(&pair, size));
     // The gap below which the distance is measured again; it allows for more rounding.
     let near = (rounding(size) + pair.error()) * Scalar::from_f64(NEAR);
-    // NaN is left to the search.
-    if !(length.min((length - radius).abs()) > near) || max_iterations == 0 {
+    if max_iterations == 0 {
         return None;
+    }
+    // NaN is left to the search.
+    if !(length.min((length - radius).abs()) > near) {
+        if size_of::<<T::Vector as Vector>::Scalar>() >= size_of::<f64>() {
+            return None;
+        }
+        // In variables of their own, so that the closed form has them in registers.
+        let [core_a, core_b] = cores;
+        let known = in_double([&core_a, &core_b], &PointPair { ..points })?;
+        let [lower, upper] = [known.lower, known.upper].map(|bound| bound + radius);
+        let (scale, simplex, w) = (Scalar::ONE, [v], v);
+        observer.show(|| Iterate { iteration: 0, simplex: &simplex, v, w, scale, lower, upper });
+        return Some(known);
     }
     let w = pair.support(-v).0 + offset;
     let lower = (v.dot(w) / length).min(length);

@@ -10,6 +10,7 @@
 mod answer;
 mod aside;
 pub(super) mod faces;
+mod in_double;
 mod room;
 pub(super) mod uncertainty;
 
@@ -25,6 +26,7 @@ use crate::shape::Shape;
 use crate::simplex::is_around_zero;
 pub(crate) use faces::ProjectedFace;
 use faces::{about_edge, across_faces};
+pub(crate) use in_double::in_double;
 pub(crate) use room::{FromContact, across_corners, look_after, room_within};
 pub(crate) use uncertainty::{SUM, Uncertainty};
 
@@ -271,6 +273,23 @@ impl<V: Vector> Known<V> {
     /// errors and is certainly beyond the radii: then there is nothing to search.
     fn between_closest(&self, pair: &mut AnyPair<'_, V>, points: PointPair<V>) -> Option<NearContact<V>> {
         let v = pair.vector_between(points, self.frame.offset);
+        let Frame { scale, per_unit, .. } = self.frame;
+        let in_world = PointPair { a: points.a * scale, b: points.b * scale };
+        if let Some(known) = in_double(pair.shapes, [pair.core_a, pair.core_b], &in_world) {
+            let [gap, lower, upper] = [known.signed_distance, known.lower, known.upper].map(|bound| bound * per_unit);
+            return Some(NearContact {
+                frame: self.frame,
+                points,
+                length: v.norm(),
+                end: End::Separated,
+                iterations: 1,
+                normal: known.normal,
+                gap,
+                lower,
+                upper,
+                overlaps_certainly: false,
+            });
+        }
         let plane = self.plane(pair, v)?;
         let upper = self.length_between(points);
         if !(plane.meets(upper, self.frame.radius) && plane.level > self.frame.radius) {
