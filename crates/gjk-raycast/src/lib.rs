@@ -33,6 +33,8 @@
 //! - *When do they meet, moving without turning?* [`linear_cast`], a ray cast at their difference.
 //! - *When do they meet, moving and turning?* [`motion_cast`], along [rigid motions](RigidMotion), [chains of
 //!   joints](ChainMotion) or a [`Trajectory`] of your own.
+//! - *By how much do they have to grow, each about a centre, until they touch?* [`growth_distance`], one smooth number
+//!   for gaps and overlaps.
 //! - *How far may one of them go before its distance has to be asked for again?* [`Distance::free_step`].
 //! - *The same questions about a shape and an infinite floor or wall:* the methods of [`HalfSpace`].
 //!
@@ -56,8 +58,8 @@
 //!
 //! About an answer:
 //! - *How does it change with a pose, a joint, a velocity?* `gradient` of [`Distance`], [`SignedDistance`],
-//!   [`Impact`] and [`RayHit`]. [`ClosestFeatures`] tells whether the derivative is unique, and has second
-//!   derivatives.
+//!   [`GrowthDistance`], [`Impact`] and [`RayHit`]. [`ClosestFeatures`] tells whether the derivative is unique, and has
+//!   second derivatives.
 //! - *What proves it?* [`distance_certificate`] and its like: a [`Certificate`] for a checker that trusts nothing
 //!   else.
 //!
@@ -149,6 +151,7 @@ mod derivative;
 mod distance;
 mod double;
 mod gjk;
+mod growth_distance;
 mod half_space;
 mod intersects;
 mod iterative_ray_cast;
@@ -186,10 +189,11 @@ pub use certificate::{
 };
 pub use contact::{Contact, ContactPoint, contact, contact_after};
 pub use derivative::{
-    ClosestFeatures, ClosestVelocities, ImpactGradient, PairGradient, PairHessian, RayCastGradient,
+    ClosestFeatures, ClosestVelocities, GrowthGradient, ImpactGradient, PairGradient, PairHessian, RayCastGradient,
     RigidMotionGradient, Smoothness,
 };
 pub use distance::{DistanceOptions, FreeStep, distance, distance_with, map_distances_into};
+pub use growth_distance::{GrowthDistance, GrowthError, GrowthOptions, growth_distance};
 pub use half_space::HalfSpace;
 pub use intersects::{IntersectOptions, Intersection, intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};

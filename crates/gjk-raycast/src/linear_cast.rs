@@ -319,11 +319,15 @@ fn answer<V: Vector>(
 /// How far apart, or how deep in one another, shapes may be found that are in contact but for rounding.
 fn rounding_of_places<V: Vector>([core_a, core_b]: &[Core<V>; 2]) -> V::Scalar {
     let sizes = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
-    let far = core_a.origin.norm() + core_b.origin.norm();
+    contact_slack(sizes, core_a.origin.norm() + core_b.origin.norm(), core_a.error + core_b.error)
+}
+
+/// How far apart bodies may be in contact, given their sizes, their distances from the origin, and the errors that they
+/// state of their support points.
+pub(crate) fn contact_slack<S: Scalar>(sizes: S, far: S, stated: S) -> S {
     // By powers of two that are less than 1, so that nothing overflows.
-    let units = |number: f64| V::Scalar::EPSILON * Scalar::from_f64(number);
-    let stated = (core_a.error + core_b.error) * Scalar::from_f64(NEAR_OF_STATED);
-    sizes * units(MAY_TOUCH) + far * units(NEAR_OF_FAR) + stated
+    let units = |number: f64| S::EPSILON * S::from_f64(number);
+    sizes * units(MAY_TOUCH) + far * units(NEAR_OF_FAR) + stated * S::from_f64(NEAR_OF_STATED)
 }
 
 /// The ray of `b` in the frame of `a`, with its options.
@@ -360,7 +364,7 @@ fn ray_of<V: Vector>(
 /// as both radii together. The point that divides it in the ratio of the radii is on both shapes, whatever the error
 /// of the normal.
 #[inline(always)]
-fn hit_on_the_way<V: Vector>(
+pub(crate) fn hit_on_the_way<V: Vector>(
     hit: &CastHit<V>,
     scale: V::Scalar,
     [core_a, core_b]: &[Core<V>; 2],

@@ -4,7 +4,7 @@ use convex_support::{Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use crate::body::{CastBody, Measures, Single};
-use crate::cast::{CastHit, CastRay, LocalRay, Part, cast};
+use crate::cast::{CastHit, CastRay, LocalRay, ObstacleCast, Part, cast};
 use crate::observer::Observer;
 use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayHit, Status, ray_cast};
 
@@ -106,28 +106,41 @@ compiled_once! {
     fn by_search<V>(body: &mut dyn CastBody<Vector = V>, ray: Ray<V>, options: &RayCastOptions<V>) -> RayExit<V> {
         let infinity = V::Scalar::infinity();
         let wanted = RayCastOptions { min_lambda: Scalar::ZERO, max_lambda: infinity, ..*options };
-        let Measures { origin, radius, extent, .. } = body.measures();
+        let Measures { radius, extent, .. } = body.measures();
         if !(extent + radius).is_finite() {
             let (outcome, status) = (Outcome::Undecided, Status::Stalled);
             return RayExit { outcome, lower: -infinity, upper: infinity, status, iterations: 0 };
         }
-        let cast = cast(body, CastRay::of(ray, Part::Reversed), &wanted, &mut Observer::none());
-        let forward = LocalRay::new(ray, origin, cast.scale);
-        let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
-        let (mut lower, mut upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);
-        let mut outcome = cast.outcome.map(|CastHit { lambda, normal, .. }| {
-            let lambda = reverse(lambda);
-            RayHit { lambda, point: ray.at(lambda), normal }
-        });
-        outcome.until(infinity, upper, |hit| hit.lambda);
-        if !(lower <= upper) {
-            // Numbers are out of range.
-            (lower, upper) = (-infinity, infinity);
-        }
+        let cast = cast_back(body, CastRay::of(ray, Part::Whole), &wanted);
+        let ObstacleCast { lower, upper, .. } = cast;
+        let outcome = cast.outcome.map(|CastHit { lambda, normal, .. }| RayHit { lambda, point: ray.at(lambda), normal });
         let status = cast.status.of(&outcome, lower > -infinity);
         let answer = RayExit { outcome, lower, upper, status, iterations: cast.iterations };
         if outcome.is_miss() { answer.missed() } else { answer }
     }
+}
+
+/// Casts the whole line of a ray from beyond a body back to where it comes from, and says in parameters of the ray where
+/// it leaves the body.
+#[inline(always)]
+pub(crate) fn cast_back<V: Vector>(
+    body: &mut dyn CastBody<Vector = V>,
+    line: CastRay<V>,
+    options: &RayCastOptions<V>,
+) -> ObstacleCast<V> {
+    let infinity = V::Scalar::infinity();
+    let origin = body.measures().origin;
+    let mut cast = cast(body, CastRay { part: Part::Reversed, ..line }, options, &mut Observer::none());
+    let forward = LocalRay::new(line.ray, origin, cast.scale);
+    let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
+    (cast.lower, cast.upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);
+    cast.outcome = cast.outcome.map(|hit| CastHit { lambda: reverse(hit.lambda), ..hit });
+    cast.outcome.until(infinity, cast.upper, |hit| hit.lambda);
+    if !(cast.lower <= cast.upper) {
+        // Numbers are out of range.
+        (cast.lower, cast.upper) = (-infinity, infinity);
+    }
+    cast
 }
 
 impl<V: Vector> RayExit<V> {

@@ -30,6 +30,7 @@ mod exact;
 mod exact_oracle;
 mod free_steps;
 mod given_up;
+mod growth_distance;
 mod half_space;
 mod half_space_motion;
 mod hit_derivatives;

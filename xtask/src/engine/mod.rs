@@ -7,6 +7,7 @@ mod distance;
 mod enclosing;
 mod fit;
 mod gradient;
+mod growth_distance;
 mod inscribed;
 mod intersect;
 mod joint_box;
@@ -38,6 +39,7 @@ use self::clearance::Clearance;
 use self::contact::Contact;
 use self::distance::Distance;
 use self::enclosing::Enclosing;
+use self::growth_distance::GrowthDistance;
 use self::inscribed::Inscribed;
 use self::intersect::Intersect;
 use self::joint_box::JointBox;
@@ -177,6 +179,7 @@ const QUERIES: &[(&str, Reader)] = &[
     ("ray_exit", read::<RayExit>),
     ("distance", read::<Distance>),
     ("signed_distance", read::<SignedDistance>),
+    ("growth_distance", read::<GrowthDistance>),
     ("contact", read::<Contact>),
     ("intersect", read::<Intersect>),
     ("linear_cast", read::<LinearCast>),

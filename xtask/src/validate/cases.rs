@@ -42,7 +42,7 @@ pub fn section(records: &[Record]) -> Section {
 }
 
 /// The queries that have a scalar, in the order of their colours.
-const QUERIES: [&str; 12] = [
+const QUERIES: [&str; 13] = [
     "ray_cast",
     "linear_cast",
     "distance",
@@ -55,6 +55,7 @@ const QUERIES: [&str; 12] = [
     "motion_cast",
     "ray_exit",
     "path",
+    "growth_distance",
 ];
 
 /// Relative error against time, a colour for each query.

@@ -86,6 +86,7 @@ const CRATES: [(&str, &[&str]); 3] = [
             "motion_cast",
             "distance",
             "signed_distance",
+            "growth_distance",
             "contact",
             "intersect",
             "scene",

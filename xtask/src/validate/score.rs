@@ -11,6 +11,7 @@ pub fn scalar_of(query: &str) -> Option<&'static str> {
         "ray_cast" | "ray_exit" => "lambda",
         "distance" => "distance",
         "signed_distance" => "signed_distance",
+        "growth_distance" => "scale",
         "linear_cast" | "motion_cast" | "path" => "time",
         "enclosing_ellipsoid" | "inscribed_ellipsoid" => "log_det",
         "margin" => "margin",

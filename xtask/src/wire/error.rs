@@ -25,6 +25,8 @@ pub enum Kind {
     DegeneratePoints,
     /// A direction of length zero.
     ZeroDirection,
+    /// A centre outside of its shape.
+    CenterOutside,
     /// Half-spaces without a bounded intersection.
     Unbounded,
     /// The answer could not be certified.

@@ -8,7 +8,8 @@ use super::closest_features::{ClosestPoints, rounding};
 use crate::motion::Moved;
 use crate::shape::Shape;
 use crate::{
-    Distance, Impact, Ray, RayHit, RigidMotion, SignedDistance, SignedDistanceOptions, Trajectory, signed_distance,
+    Distance, GrowthDistance, Impact, Ray, RayHit, RigidMotion, SignedDistance, SignedDistanceOptions, Trajectory,
+    signed_distance,
 };
 
 /// How far overlapping bodies are pushed into one another to test for another direction out, as a part of their size,
@@ -162,6 +163,35 @@ impl<V: Vector> RayHit<V> {
     #[must_use]
     pub fn refined(self, features: &ClosestFeatures<V>) -> Self {
         Self { normal: Some(features.normal), ..self }
+    }
+}
+
+impl<V: Vector> GrowthDistance<V> {
+    /// The features in which the shapes touch when both are grown by the scale, given the shapes and the centres of the
+    /// query; `None` if there is no normal.
+    ///
+    /// They are those of the shapes as they are, with `b` moved along the way between the centres until they touch: the
+    /// scale times as large, both lie as the grown shapes do. Their [smoothness](ClosestFeatures::smoothness) is that of
+    /// the scale, and [`refined`](Self::refined) by them the answer has an accurate [gradient](Self::gradient).
+    #[must_use]
+    pub fn closest_features(
+        &self,
+        a: &dyn SupportMap<Vector = V>,
+        b: &dyn SupportMap<Vector = V>,
+        [center_a, center_b]: [V; 2],
+    ) -> Option<ClosestFeatures<V>> {
+        let one = V::Scalar::ONE;
+        let moved = RigidMotion::translation((center_b - center_a) * (one / self.scale - one));
+        let point = center_a + (self.point - center_a) / self.scale;
+        let features = touching(self.normal?, point, one, (a, &RigidMotion::default()), (b, &moved))?;
+        Some(ClosestFeatures { is_at_floor: false, ..features })
+    }
+
+    /// The answer with the normal and the point of its [features](Self::closest_features), which are accurate to
+    /// rounding, given the centre of `a`.
+    pub fn refined(self, features: &ClosestFeatures<V>, center_a: V) -> Self {
+        let point = center_a + (features.points[1] - center_a) * self.scale;
+        Self { normal: Some(features.normal), point, ..self }
     }
 }
 

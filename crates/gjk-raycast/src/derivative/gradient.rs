@@ -4,7 +4,9 @@ use convex_support::numerics::elementary::sin_cos;
 use convex_support::{AngularVelocity, Matrix, MotionGradient, Scalar, Vector};
 
 use super::ClosestFeatures;
-use crate::{Displacement, Distance, Impact, Ray, RayHit, RigidMotion, SignedDistance, Trajectory, axial};
+use crate::{
+    Displacement, Distance, GrowthDistance, Impact, Ray, RayHit, RigidMotion, SignedDistance, Trajectory, axial,
+};
 
 /// The derivatives of a distance by the motion of either body and by their radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -167,6 +169,45 @@ impl<V: Vector> RayHit<V> {
             direction: contact.translation * self.lambda,
             radius: -contact.translation.length(),
         })
+    }
+}
+
+/// The derivatives of a growth distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
+pub struct GrowthGradient<V: Vector> {
+    /// By the motion of `a`, which carries its centre.
+    pub a: MotionGradient<V>,
+    /// By the motion of `b`, which carries its centre.
+    pub b: MotionGradient<V>,
+    /// By the centre of `a` alone, in a shape at rest.
+    pub center_a: V,
+    /// By the centre of `b` alone.
+    pub center_b: V,
+    /// By the radius of either body before it grows: never positive.
+    pub radius: V::Scalar,
+}
+
+impl<V: Vector> GrowthDistance<V> {
+    /// The derivatives of the scale, given both centres. `None` if the scale is 0, where it has a kink, or not known.
+    ///
+    /// With `n` the normal, `d = b − a` the way between the centres and `h` the support value of the difference of both
+    /// shapes, each relative to its centre, along `−n`, the scale is `s = −n·d/h`, and stationary in `n`. A shape that
+    /// moves by `u` without its centre changes `h` by `−n·u` at a point `x` of its surface, and the centre alone changes
+    /// both `h` and `d`. Together they are a force at `a + s(x − a)`, the point that both have in common: the bodies
+    /// close in there, per unit of the scale, at the speed `−n·d/s = h`.
+    ///
+    /// If the grown shapes touch in one point and with one normal they are derivatives, otherwise one-sided;
+    /// [`closest_features`](Self::closest_features) tells which. They are as accurate as the normal and the point of
+    /// the answer: of curved shapes to about half of their digits, unless it is [refined](Self::refined).
+    #[must_use]
+    pub fn gradient(&self, [center_a, center_b]: [V; 2]) -> Option<GrowthGradient<V>> {
+        let a = at_contact(self.normal, (center_b - center_a) / self.scale, self.point)?;
+        let center_a = a.translation * (V::Scalar::ONE - self.scale);
+        let radius = -a.translation.length() * self.scale;
+        Some(GrowthGradient { a, b: a.reversed(), center_a, center_b: -center_a, radius })
     }
 }
 
