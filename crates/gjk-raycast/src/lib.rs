@@ -31,6 +31,7 @@
 //! - *When do they meet, moving without turning?* [`linear_cast`], a ray cast at their difference.
 //! - *When do they meet, moving and turning?* [`motion_cast`], along [rigid motions](RigidMotion), [chains of
 //!   joints](ChainMotion) or a [`Trajectory`] of your own.
+//! - *How near do they come on the way, when and where?* [`motion_clearance`].
 //! - *How far may one of them go before its distance has to be asked for again?* [`Distance::free_step`].
 //! - *The same questions about a shape and an infinite floor or wall:* the methods of [`HalfSpace`].
 //!
@@ -191,8 +192,9 @@ pub use linkage::{
     Linkage, LinkageError, Met, Path, PathContact, PathWorkspace,
 };
 pub use motion::{
-    ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionIterate, MovingBall, Pose, RigidMotion, Trajectory,
-    TurningPlane, motion_cast, motion_cast_with,
+    ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate,
+    MovingBall, Pose, RigidMotion, Trajectory, TurningPlane, motion_cast, motion_cast_with, motion_clearance,
+    motion_clearance_with,
 };
 pub use observer::{Iterate, Status};
 pub use outcome::{Cast, Impact, Miss, Outcome, RayCastError, StartInContact};
