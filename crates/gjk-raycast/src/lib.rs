@@ -35,6 +35,7 @@
 //!   joints](ChainMotion) or a [`Trajectory`] of your own.
 //! - *By how much do they have to grow, each about a centre, until they touch?* [`growth_distance`], one smooth number
 //!   for gaps and overlaps.
+//! - *How near do they come on the way, when and where?* [`motion_clearance`].
 //! - *How far may one of them go before its distance has to be asked for again?* [`Distance::free_step`].
 //! - *The same questions about a shape and an infinite floor or wall:* the methods of [`HalfSpace`].
 //!
@@ -203,8 +204,9 @@ pub use linkage::{
     Linkage, LinkageError, Met, Path, PathContact, PathWorkspace,
 };
 pub use motion::{
-    ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionIterate, MovingBall, Pose, RigidMotion, Trajectory,
-    TurningPlane, motion_cast, motion_cast_with,
+    ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate,
+    MovingBall, Pose, RigidMotion, Trajectory, TurningPlane, motion_cast, motion_cast_with, motion_clearance,
+    motion_clearance_with,
 };
 pub use observer::{Iterate, Status};
 pub use outcome::{Cast, Impact, Miss, Outcome, RayCastError, StartInContact};

@@ -39,6 +39,7 @@ mod lean;
 mod lies;
 mod linkage;
 mod motion_cast;
+mod motion_clearance;
 mod motion_laws;
 mod moving_boxes;
 mod options;

@@ -15,6 +15,7 @@ mod linear_cast;
 mod margin;
 mod method;
 mod motion_cast;
+mod motion_clearance;
 mod pair;
 pub mod path;
 mod path_picture;
@@ -46,6 +47,7 @@ use self::joint_box::JointBox;
 use self::linear_cast::LinearCast;
 use self::margin::Margin;
 use self::motion_cast::MotionCast;
+use self::motion_clearance::MotionClearance;
 use self::path::Path;
 use self::ray_cast::RayCast;
 use self::ray_exit::RayExit;
@@ -184,6 +186,7 @@ const QUERIES: &[(&str, Reader)] = &[
     ("intersect", read::<Intersect>),
     ("linear_cast", read::<LinearCast>),
     ("motion_cast", read::<MotionCast>),
+    ("motion_clearance", read::<MotionClearance>),
     ("scene", read::<Scene>),
     ("path", read::<Path>),
     ("joint_box", read::<JointBox>),

@@ -84,6 +84,7 @@ const CRATES: [(&str, &[&str]); 3] = [
             "ray_exit",
             "linear_cast",
             "motion_cast",
+            "motion_clearance",
             "distance",
             "signed_distance",
             "growth_distance",

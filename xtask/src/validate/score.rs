@@ -9,7 +9,7 @@ use crate::wire::fields::Object;
 pub fn scalar_of(query: &str) -> Option<&'static str> {
     Some(match query {
         "ray_cast" | "ray_exit" => "lambda",
-        "distance" => "distance",
+        "distance" | "motion_clearance" => "distance",
         "signed_distance" => "signed_distance",
         "growth_distance" => "scale",
         "linear_cast" | "motion_cast" | "path" => "time",
@@ -27,6 +27,7 @@ pub fn called(query: &str) -> String {
     match query {
         "intersect" => "overlap",
         "motion_cast" => "turning cast",
+        "motion_clearance" => "least distance over a motion",
         "margin" => "margin of ellipsoids",
         "track" => "margin along a motion",
         "clearance" => "clearance of a robot",

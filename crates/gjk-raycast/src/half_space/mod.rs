@@ -10,11 +10,10 @@ mod straight_casts;
 use convex_support::{InvalidShape, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use self::plane::Lowest;
 use crate::contact::manifold_over_plane;
-use crate::{Contact, Distance, SignedDistance, Status};
+use crate::{Contact, Distance, SignedDistance};
 
-pub(crate) use self::plane::Plane;
+pub(crate) use self::plane::{Lowest, Plane};
 
 /// The points x with n·x ≤ offset: everything on one side of a plane.
 ///
@@ -87,41 +86,14 @@ impl<V: Vector> HalfSpace<V> {
     /// [rounding](SupportMap::rounding) of the shape, however far along the plane the shape is.
     pub fn signed_distance<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A) -> SignedDistance<V> {
         let plane = self.plane();
-        let Lowest { height, point } = plane.lowest(shape, Scalar::ZERO);
-        let is_known = height.value.is_finite() && height.error.is_finite();
-        let infinity = V::Scalar::infinity();
-        SignedDistance {
-            signed_distance: height.value,
-            lower: if is_known { height.least() } else { -infinity },
-            upper: if is_known { height.most() } else { infinity },
-            normal: plane.unit,
-            point_a: point,
-            point_b: point - plane.unit * height.value,
-            overlap: height.value <= Scalar::ZERO,
-            status: if is_known { Status::Converged } else { Status::Stalled },
-            iterations: 1,
-            unexpanded: 0,
-        }
+        plane.lowest(shape, Scalar::ZERO).signed_distance(plane.unit)
     }
 
     /// The distance from a shape, `a`, to the half-space, `b`; 0 if they overlap, where
     /// [`signed_distance`](Self::signed_distance) finds the depth.
     pub fn distance_from<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A) -> Distance<V> {
-        let zero = V::Scalar::ZERO;
-        let SignedDistance { signed_distance, lower, upper, normal, point_a, point_b, status, iterations, .. } =
-            self.signed_distance(shape);
-        let overlap = !(signed_distance > zero);
-        Distance {
-            distance: signed_distance.max(zero),
-            lower: lower.max(zero),
-            upper: upper.max(zero),
-            overlap,
-            point_a,
-            point_b: if overlap { point_a } else { point_b },
-            normal: (!overlap).then_some(normal),
-            status,
-            iterations,
-        }
+        let plane = self.plane();
+        plane.lowest(shape, Scalar::ZERO).distance(plane.unit)
     }
 
     /// The contact of a shape, `a`, with the half-space, `b`; `None` if the shape is farther than `within` from it.

@@ -7,6 +7,7 @@ use num_traits::Float;
 
 use crate::contact::Level;
 use crate::unit::{power_of_two_near, reciprocal_of_power};
+use crate::{Distance, SignedDistance, Status};
 
 /// The plane of a half-space. Its normal and offset are those given, in units of a power of two near the normal's
 /// length, and so exact.
@@ -19,9 +20,49 @@ pub(crate) struct Plane<V: Vector> {
 }
 
 /// A shape's point nearest to a half-space, or deepest in it.
-pub(super) struct Lowest<V: Vector> {
-    pub(super) height: Level<V::Scalar>,
-    pub(super) point: V,
+pub(crate) struct Lowest<V: Vector> {
+    pub(crate) height: Level<V::Scalar>,
+    pub(crate) point: V,
+}
+
+impl<V: Vector> Lowest<V> {
+    /// The signed distance of the shape from the half-space with this unit normal.
+    pub(super) fn signed_distance(self, unit: V) -> SignedDistance<V> {
+        let Self { height, point } = self;
+        let is_known = height.value.is_finite() && height.error.is_finite();
+        let infinity = V::Scalar::infinity();
+        SignedDistance {
+            signed_distance: height.value,
+            lower: if is_known { height.least() } else { -infinity },
+            upper: if is_known { height.most() } else { infinity },
+            normal: unit,
+            point_a: point,
+            point_b: point - unit * height.value,
+            overlap: height.value <= Scalar::ZERO,
+            status: if is_known { Status::Converged } else { Status::Stalled },
+            iterations: 1,
+            unexpanded: 0,
+        }
+    }
+
+    /// The distance of the shape, which is 0 if it overlaps the half-space.
+    pub(crate) fn distance(self, unit: V) -> Distance<V> {
+        let zero = V::Scalar::ZERO;
+        let SignedDistance { signed_distance, lower, upper, normal, point_a, point_b, status, iterations, .. } =
+            self.signed_distance(unit);
+        let overlap = !(signed_distance > zero);
+        Distance {
+            distance: signed_distance.max(zero),
+            lower: lower.max(zero),
+            upper: upper.max(zero),
+            overlap,
+            point_a,
+            point_b: if overlap { point_a } else { point_b },
+            normal: (!overlap).then_some(normal),
+            status,
+            iterations,
+        }
+    }
 }
 
 impl<V: Vector> Plane<V> {

@@ -9,6 +9,7 @@ use convex_support::numerics::range::is_comfortable;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::falling::Falling;
 use super::free_interval::acceleration_if_free;
 use super::instant::{Approach, Base, Instant, Limits, NEAR_IN_MOTION, Stage};
 use super::trajectory::TurningPlane;
@@ -31,8 +32,8 @@ const GRAZE: f64 = 16.0;
 
 /// How deep the bodies may be at the upper bound of a converged answer: so many roundings of their size, or so many
 /// errors of their distance. It is half of what `docs/evidence.md` says of both bounds.
-const NARROW_AT_END: f64 = 512.0;
-const NARROW_OF_ERROR: f64 = 8.0;
+pub(super) const NARROW_AT_END: f64 = 512.0;
+pub(super) const NARROW_OF_ERROR: f64 = 8.0;
 
 /// If the normal has turned in a step by more than the root of this, in radians, the next step is not expected to be
 /// like it.
@@ -135,7 +136,7 @@ pub struct MotionIterate<V: Vector> {
 
 /// The state of the search. Up to the time of [`near`](Self::near) the bodies are proved to be apart.
 pub(super) struct Search<'p, V: Vector> {
-    pub(super) bodies: &'p dyn Approach<V>,
+    pub(super) bodies: &'p mut dyn Approach<V>,
     pub(super) options: MotionCastOptions<V>,
     observer: &'p mut dyn FnMut(MotionIterate<V>),
     /// The level from which the distances of all instants are measured.
@@ -150,6 +151,8 @@ pub(super) struct Search<'p, V: Vector> {
     pub(super) acceleration: V::Scalar,
     /// A later time at which they are apart. It is not proved that they are so in between.
     pub(super) ahead: Option<Instant<V>>,
+    /// The bound `M` with which it is not.
+    pub(super) refuted: Option<V::Scalar>,
     /// The earliest time known at which they are not certainly apart.
     pub(super) beyond: Option<Instant<V>>,
     /// The instant that was the earliest of these before.
@@ -162,6 +165,10 @@ pub(super) struct Search<'p, V: Vector> {
     way: V::Scalar,
     pub(super) slow: u8,
     pub(super) looks: usize,
+    /// The target distance that falls, if the least distance is looked for. All distances are measured from it.
+    pub(super) falling: Option<Falling<V>>,
+    /// The instant at which the bodies are nearest, as far as such a search knows, with distances from contact.
+    pub(super) least: Instant<V>,
 }
 
 /// Whether sums and products of a few lengths as large as this neither overflow nor are subnormal. About other lengths
@@ -183,7 +190,7 @@ pub(super) type Begin<V> = fn(&mut Search<'_, V>) -> MotionEnd<V>;
 impl<'p, V: Vector> Search<'p, V> {
     /// The first contact of two bodies up to the end of the motion.
     pub(super) fn run(
-        bodies: &'p dyn Approach<V>,
+        bodies: &'p mut dyn Approach<V>,
         options: MotionCastOptions<V>,
         begin_in_contact: Option<Begin<V>>,
         observer: &'p mut dyn FnMut(MotionIterate<V>),
@@ -193,27 +200,54 @@ impl<'p, V: Vector> Search<'p, V> {
             let (outcome, lower) = (Outcome::Miss(Miss { axis }), options.max_time);
             return MotionCast { outcome, lower, upper: infinity, status: Status::Converged, iterations: 0 };
         }
+        let mut search = match Self::begin(bodies, options, observer) {
+            Ok(search) => search,
+            Err(bodies) => {
+                let (outcome, status) = (Outcome::Undecided, Status::Stalled);
+                let iterations = bodies.iterations();
+                return MotionCast { outcome, lower: zero, upper: infinity, status, iterations };
+            }
+        };
+        let end = match options.start_in_contact {
+            _ if search.near.gap > zero => search.advance(),
+            StartInContact::Report => search.start_in_contact(),
+            StartInContact::IfDeeper => {
+                begin_in_contact.map_or(MotionEnd::Undecided(Status::Stalled), |begin| begin(&mut search))
+            }
+        };
+        search.answer(end)
+    }
+
+    /// The search at the start, or, if the bodies' lengths are out of range, the bodies.
+    #[inline(always)]
+    pub(super) fn begin(
+        bodies: &'p mut dyn Approach<V>,
+        options: MotionCastOptions<V>,
+        observer: &'p mut dyn FnMut(MotionIterate<V>),
+    ) -> Result<Self, &'p mut dyn Approach<V>> {
+        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         let axis = options.axis.unwrap_or_else(|| bodies.between()).unit().unwrap_or_else(|| Vector::axis(0));
         // The depth matters only if bodies that begin in contact are to leave one another.
         let leaves = options.start_in_contact == StartInContact::IfDeeper;
-        let limits = Limits { distance: infinity, depth: if leaves { infinity } else { zero } };
+        let limits = Limits::new(infinity, if leaves { infinity } else { zero });
         let near = bodies.at(zero, axis, limits, false);
         let near = if near.gap > zero || near.is_close { near } else { bodies.at(zero, axis, limits, true) };
         let measure = bodies.size() + near.distance.abs() + bodies.speed_at(&near);
         if !(measure == zero || is_in_range(measure)) {
-            let (outcome, status) = (Outcome::Undecided, Status::Stalled);
-            return MotionCast { outcome, lower: zero, upper: infinity, status, iterations: bodies.iterations() };
+            return Err(bodies);
         }
         let plane = TurningPlane { from: near.normal, to: near.normal };
+        let acceleration = bodies.acceleration_along(plane, [zero, Scalar::ONE]);
         let mut search = Self {
             bodies,
             options,
             observer,
             base: Base::default(),
-            acceleration: bodies.acceleration_along(plane, [zero, Scalar::ONE]),
+            acceleration,
             before: Instant { time: -V::Scalar::ONE, ..near },
             near,
             ahead: None,
+            refuted: None,
             beyond: None,
             farther: None,
             upper: infinity,
@@ -221,16 +255,11 @@ impl<'p, V: Vector> Search<'p, V> {
             way: infinity,
             slow: 0,
             looks: 1,
+            falling: None,
+            least: near,
         };
         search.show(&near);
-        let end = match options.start_in_contact {
-            _ if near.gap > zero => search.advance(),
-            StartInContact::Report => search.start_in_contact(),
-            StartInContact::IfDeeper => {
-                begin_in_contact.map_or(MotionEnd::Undecided(Status::Stalled), |begin| begin(&mut search))
-            }
-        };
-        search.answer(end)
+        Ok(search)
     }
 
     /// Goes on from a time at which the bodies are apart to the end of the motion, or to a contact.
@@ -248,6 +277,10 @@ impl<'p, V: Vector> Search<'p, V> {
                 self.near.time = rest[1];
                 return MotionEnd::Miss(axis);
             }
+            if let Some(falling) = self.falling {
+                (falling.go_on)(self);
+                continue;
+            }
             let time = if self.near.distance <= self.closest() { None } else { self.next_time() };
             let Some(time) = time else {
                 match self.close_in() {
@@ -258,7 +291,7 @@ impl<'p, V: Vector> Search<'p, V> {
             let there = match self.base.stage {
                 Stage::Apart => self.glance(time),
                 _ if self.is_endless() => break,
-                _ => self.look(self.within(time), Limits { distance: zero, depth: zero }),
+                _ => self.look(self.within(time), Limits::new(zero, zero)),
             };
             if there.gap > zero {
                 self.advance_to(&there);
@@ -291,7 +324,7 @@ impl<'p, V: Vector> Search<'p, V> {
             if next >= self.upper {
                 return Some(MotionEnd::Contact);
             }
-            let there = self.look(next, Limits { distance: V::Scalar::infinity(), depth: zero });
+            let there = self.look(next, Limits::new(V::Scalar::infinity(), zero));
             if there.overlaps() {
                 self.upper = there.time;
                 return Some(MotionEnd::Contact);
@@ -323,10 +356,10 @@ impl<'p, V: Vector> Search<'p, V> {
     /// Goes on to a time at which the bodies are apart, if it is proved that they are so until then. If it is not, the
     /// time is remembered.
     pub(super) fn advance_to(&mut self, there: &Instant<V>) -> bool {
-        let Some(acceleration) =
-            acceleration_if_free(self.bodies, &self.near, there, &self.base).filter(|_| self.stay_in_contact(there))
-        else {
+        let proof = acceleration_if_free(&*self.bodies, &self.near, there, &self.base);
+        let Some(acceleration) = proof.ok().filter(|_| self.stay_in_contact(there)) else {
             self.ahead = Some(*there);
+            self.refuted = proof.err();
             return false;
         };
         (self.before, self.near) = (self.near, *there);
@@ -374,10 +407,11 @@ impl<'p, V: Vector> Search<'p, V> {
     /// The bodies at a time: exactly if they can be expected to be nearly in contact there, since Newton's method
     /// squares their distance, and roughly otherwise. If the search makes no progress towards a contact, they are
     /// looked at exactly too, since a rough distance may only make it seem that there is one.
-    fn glance(&mut self, time: V::Scalar) -> Instant<V> {
-        let limits = Limits { distance: self.enough_at(time), depth: Scalar::ZERO };
+    pub(super) fn glance(&mut self, time: V::Scalar) -> Instant<V> {
+        let limits = Limits::new(self.enough_at(time), Scalar::ZERO);
         let Instant { distance, error, .. } = self.near;
-        let is_near = distance * distance < error * self.bodies.size() * Scalar::from_f64(NEAR_IN_MOTION);
+        let is_near = self.falling.is_none()
+            && distance * distance < error * self.bodies.size() * Scalar::from_f64(NEAR_IN_MOTION);
         if is_near || self.slow > IDLE_LOOKS {
             self.beyond = self.beyond.filter(|beyond| beyond.is_close);
             return self.look(time, limits);
@@ -408,7 +442,7 @@ impl<'p, V: Vector> Search<'p, V> {
     pub(super) fn look(&mut self, time: V::Scalar, mut limits: Limits<V::Scalar>) -> Instant<V> {
         let axis = self.expected_normal(time);
         if self.base.stage != Stage::Apart {
-            limits = Limits { distance: V::Scalar::infinity(), depth: V::Scalar::infinity() };
+            limits = Limits::new(V::Scalar::infinity(), V::Scalar::infinity());
         }
         let there = self.bodies.at(time, axis, limits, true);
         self.looks += 1;
@@ -416,12 +450,13 @@ impl<'p, V: Vector> Search<'p, V> {
         self.measured(there)
     }
 
-    fn show(&mut self, there: &Instant<V>) {
+    pub(super) fn show(&mut self, there: &Instant<V>) {
         let lower = self.lower();
+        let target = self.falling.map_or(V::Scalar::ZERO, |falling| falling.target);
         (self.observer)(MotionIterate {
             iteration: self.looks - 1,
             time: there.time,
-            gap: there.gap,
+            gap: there.gap + target,
             normal: there.normal,
             lower,
             upper: self.upper,
@@ -452,7 +487,7 @@ impl<'p, V: Vector> Search<'p, V> {
         (before - self.bodies.level(self.upper, normal).0).abs() <= narrow
     }
 
-    fn answer(&self, end: MotionEnd<V>) -> MotionCast<V> {
+    pub(super) fn answer(&self, end: MotionEnd<V>) -> MotionCast<V> {
         let Instant { time: near, point, normal, .. } = self.near;
         let mut lower = self.lower();
         let (mut outcome, status) = match end {

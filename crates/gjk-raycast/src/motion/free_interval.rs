@@ -39,14 +39,14 @@ use super::trajectory::TurningPlane;
 const ROUNDING: f64 = 64.0;
 
 /// Whether the signed distance of the bodies certainly stays above a level between two times at which it does so by the
-/// given gaps. At level 0 this means that they are apart. If so, the answer is the bound `M` along the plane that turns
-/// from the one normal to the other, whichever plane is the proof.
+/// given gaps. At level 0 this means that they are apart. The answer is the bound `M` along the plane that turns from the
+/// one normal to the other, whichever plane is the proof; an error if there is none.
 pub(super) fn acceleration_if_free<V: Vector>(
     bodies: &dyn Approach<V>,
     from: &Instant<V>,
     to: &Instant<V>,
     base: &Base<V::Scalar>,
-) -> Option<V::Scalar> {
+) -> Result<V::Scalar, V::Scalar> {
     let times = [from.time, to.time];
     let most = |normals: [V; 2]| bodies.acceleration_along(TurningPlane { from: normals[0], to: normals[1] }, times);
     let turning = most([from.normal, to.normal]);
@@ -56,11 +56,11 @@ pub(super) fn acceleration_if_free<V: Vector>(
         bent += V::Scalar::from_f64(-2.0) * base.level * rate.length_squared();
     }
     if keeps_apart([from.gap, to.gap], bent, times) {
-        return Some(turning);
+        return Ok(turning);
     }
     // If the two planes are one, there is no other to try.
     if from.normal == to.normal {
-        return None;
+        return Err(turning);
     }
     let gap_along = |time, normal| {
         let (level, error) = bodies.level(time, normal);
@@ -68,7 +68,7 @@ pub(super) fn acceleration_if_free<V: Vector>(
     };
     let is_free = keeps_apart([gap_along(from.time, to.normal), to.gap], most([to.normal; 2]), times)
         || keeps_apart([from.gap, gap_along(to.time, from.normal)], most([from.normal; 2]), times);
-    is_free.then_some(turning)
+    if is_free { Ok(turning) } else { Err(turning) }
 }
 
 /// Whether planes that separate the bodies by these gaps at the ends of an interval separate them in between too, given

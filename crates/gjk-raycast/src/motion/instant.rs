@@ -5,11 +5,17 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::trajectory::TurningPlane;
+use crate::Distance;
 use crate::unit::length_bound;
 
 /// The closing speeds at both ends of a step predict how the distance changes. The step counts as smooth if the
 /// distance differs from that by no more than this part of what the change of the speeds makes of it.
 const KINK: f64 = 0.1;
+
+/// The width, relative to the distance, that the bracket of a rough distance may have. The time to look at next hardly
+/// depends on it, and the gap is proved however wide it is. A narrower bracket takes more support points, and a wider
+/// one more looks.
+const ROUGH: f64 = 0.2;
 
 /// Bodies whose distance, or overlap, is less than this many errors of it are looked at exactly.
 pub(super) const NEAR_IN_MOTION: f64 = 64.0;
@@ -70,6 +76,15 @@ pub(super) struct Limits<S> {
     pub(super) distance: S,
     /// If they are certainly deeper in one another than this, it is enough to know that.
     pub(super) depth: S,
+    /// The width, relative to the distance, that the bracket of a rough distance may have. If it is zero, the distance
+    /// is known to rounding, and not only the level of one plane between the bodies.
+    pub(super) rough: S,
+}
+
+impl<S: Scalar> Limits<S> {
+    pub(super) fn new(distance: S, depth: S) -> Self {
+        Self { distance, depth, rough: S::from_f64(ROUGH) }
+    }
 }
 
 /// The level from which distances are measured. By default this is contact.
@@ -122,6 +137,12 @@ impl<S: Scalar> Base<S> {
 
 /// Two bodies, `a` and `b`, in motion: how far apart they are at any time, and how unevenly that may change in between.
 pub(super) trait Approach<V: Vector> {
+    /// Measures all distances from `target` on, instead of from contact. [`Instant`]s that are known are not changed.
+    fn aim(&mut self, target: V::Scalar);
+
+    /// The distance of the bodies at a time and their closest points, with all that is certain of it.
+    fn distance(&self, time: V::Scalar) -> Distance<V>;
+
     /// A bound on the size of both bodies together.
     fn size(&self) -> V::Scalar;
 

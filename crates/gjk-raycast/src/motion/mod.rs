@@ -2,6 +2,8 @@
 
 mod box_look;
 mod chain_motion;
+mod clearance;
+mod falling;
 mod first_contact;
 mod free_interval;
 mod from_contact;
@@ -20,6 +22,7 @@ mod trajectory;
 
 pub(crate) use chain_motion::Bounds;
 pub use chain_motion::ChainMotion;
+pub use clearance::{MotionClearance, MotionClearanceOptions, motion_clearance, motion_clearance_with};
 pub use first_contact::{MotionCast, MotionCastOptions, MotionIterate};
 pub(crate) use motion_cast::{check, checked};
 pub use motion_cast::{motion_cast, motion_cast_with};

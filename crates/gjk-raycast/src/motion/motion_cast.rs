@@ -106,7 +106,7 @@ compiled_once! {
         observer: &mut dyn FnMut(MotionIterate<V>),
     ) -> MotionCast<V> {
         let begin_in_contact = options.rare.0.map(|rare| rare.begin_in_contact);
-        Search::run(&MovingPair::new(shapes, motions, &options), options, begin_in_contact, observer)
+        Search::run(&mut MovingPair::new(shapes, motions, &options), options, begin_in_contact, observer)
     }
 }
 

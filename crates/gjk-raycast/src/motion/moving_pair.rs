@@ -21,7 +21,9 @@ use crate::separation::RareInDistances;
 use crate::shape::Shape;
 use crate::signed_distance::rough_signed_distance;
 use crate::unit::{is_moderate, length_bound, lost_to_underflow, power_of_two_near, reciprocal_of_power};
-use crate::{DistanceOptions, LinearCast, LinearCastOptions, Motion, MotionCastOptions, SignedDistanceOptions};
+use crate::{
+    Distance, DistanceOptions, LinearCast, LinearCastOptions, Motion, MotionCastOptions, SignedDistanceOptions,
+};
 
 /// Two bodies and their motions.
 pub(super) struct MovingPair<'s, V: Vector> {
@@ -153,7 +155,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
     #[inline(never)]
     fn by_search(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>, is_rough: bool) -> Instant<V> {
         let placed = self.placed(time);
-        if is_rough && let Some(there) = self.roughly(&placed, axis, limits.distance) {
+        if is_rough && let Some(there) = self.roughly(&placed, axis, limits) {
             return there;
         }
         let is_depth_asked = limits.depth > Scalar::ZERO;
@@ -164,7 +166,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
     /// The bodies at a time, by their signed distance.
     #[inline(never)]
     fn by_signed_distance(&self, placed: &Placed<'_, V>, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
-        let Limits { distance: limit, depth: depth_limit } = limits;
+        let Limits { distance: limit, depth: depth_limit, .. } = limits;
         let wanted = SignedDistanceOptions { axis: Some(axis), limit, depth_limit, ..Default::default() };
         let answer = rough_signed_distance(placed, wanted, self.rare.map(|rare| rare.in_distances));
         self.count(answer.iterations);
@@ -208,6 +210,21 @@ impl<'s, V: Vector> MovingPair<'s, V> {
 }
 
 impl<V: Vector> Approach<V> for MovingPair<'_, V> {
+    fn aim(&mut self, target: V::Scalar) {
+        self.a.core.radius = self.a.shape.core().radius + target;
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn distance(&self, time: V::Scalar) -> Distance<V> {
+        let placed = self.placed(time);
+        let rare = Rare(self.rare.map(|rare| rare.in_distances));
+        let answer = distance_of_any(&placed.a, &placed.b, DistanceOptions { rare, ..DistanceOptions::lean() });
+        self.count(answer.iterations);
+        let [point_a, point_b] = [answer.point_a, answer.point_b].map(|point| point + placed.place);
+        Distance { point_a, point_b, ..answer }
+    }
+
     fn size(&self) -> V::Scalar {
         self.a.core.extent + self.a.core.radius + self.b.core.extent + self.b.core.radius
     }
@@ -225,6 +242,8 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
         let known = match self.knows_points {
             _ if is_close && limits.depth > Scalar::ZERO => None,
             true => self.by_closest_points(time, axis, limits, is_close),
+            // The level of a facet is no more than a lower bound of the distance.
+            _ if self.a.core.radius > Scalar::ZERO || limits.rough == Scalar::ZERO => None,
             false => self.by_facets(time, axis, limits, is_close),
         };
         known.unwrap_or_else(|| self.by_search(time, axis, limits, !(is_close || self.knows_points)))
@@ -283,14 +302,7 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
 
     /// This is not the point of `b` that is deepest in `a`: if a small body has to leave through a large one, that
     /// point is far behind the small body.
-    #[cold]
-    #[inline(never)]
     fn common_point(&self, there: &Instant<V>) -> V {
-        let placed = self.placed(there.time);
-        let rare = Rare(self.rare.map(|rare| rare.in_distances));
-        let wanted = DistanceOptions { rare, ..DistanceOptions::lean() };
-        let answer = distance_of_any(&placed.a, &placed.b, wanted);
-        self.count(answer.iterations);
-        answer.point_b + placed.place
+        self.distance(there.time).point_b
     }
 }

@@ -11,10 +11,13 @@ use super::motion_cast::{check, checked};
 use super::moving_body::MovingBody;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::contact::Level;
-use crate::half_space::Plane;
+use crate::half_space::{Lowest, Plane};
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::{length_bound, lost_to_underflow};
-use crate::{HalfSpace, Motion, MotionCast, MotionCastOptions, MotionIterate, RayCastError};
+use crate::{
+    Distance, HalfSpace, Motion, MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate,
+    RayCastError,
+};
 
 impl<V: Vector> HalfSpace<V> {
     /// The first contact of a shape that moves and turns, `a`, with the half-space, `b`, which is at rest.
@@ -76,6 +79,50 @@ impl<V: Vector> HalfSpace<V> {
         }
         Ok(by_search(&WithoutLines(shape), &motion, self, options, &mut observer))
     }
+
+    /// The least distance of a shape that moves and turns, `a`, from the half-space, `b`, which is at rest, over a
+    /// motion.
+    ///
+    /// This is [`motion_clearance`](crate::motion_clearance()) against a body without an end.
+    ///
+    /// # Errors
+    /// Those of [`motion_clearance`](crate::motion_clearance()).
+    pub fn motion_clearance<A: SupportMap<Vector = V> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: impl Trajectory<Vector = V>,
+        options: MotionClearanceOptions<V>,
+    ) -> Result<MotionClearance<V>, RayCastError> {
+        self.motion_clearance_with(shape, motion, options, |_| {})
+    }
+
+    /// [`motion_clearance`](Self::motion_clearance) with an observer that sees every time examined.
+    ///
+    /// # Errors
+    /// Those of [`motion_clearance`](crate::motion_clearance()).
+    pub fn motion_clearance_with<A: SupportMap<Vector = V> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: impl Trajectory<Vector = V>,
+        options: MotionClearanceOptions<V>,
+        observer: impl FnMut(MotionIterate<V>),
+    ) -> Result<MotionClearance<V>, RayCastError> {
+        self.clearance_within(shape, motion, options, V::Scalar::infinity(), observer)
+    }
+
+    /// The same with a limit, as for [two bodies](super::clearance_within).
+    pub(crate) fn clearance_within<A: SupportMap<Vector = V> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: impl Trajectory<Vector = V>,
+        options: MotionClearanceOptions<V>,
+        limit: V::Scalar,
+        mut observer: impl FnMut(MotionIterate<V>),
+    ) -> Result<MotionClearance<V>, RayCastError> {
+        check("motion_a", &motion)?;
+        let options = options.checked()?;
+        Ok(clearance_by_search(&WithoutLines(shape), &motion, self, options, limit, &mut observer))
+    }
 }
 
 compiled_once! {
@@ -87,11 +134,24 @@ compiled_once! {
         options: MotionCastOptions<V>,
         observer: &mut dyn FnMut(MotionIterate<V>),
     ) -> MotionCast<V> {
-        let margin = options.target_distance;
-        let (body, plane) = (MovingBody::new(shape, motion, margin), half_space.plane());
-        let (iterations, hint) = (Cell::new(0), Cell::new(Hint::new()));
         let begin_in_contact = options.rare.0.map(|rare| rare.begin_in_contact);
-        Search::run(&OverHalfSpace { body, margin, plane, iterations, hint }, options, begin_in_contact, observer)
+        let mut bodies = OverHalfSpace::new(shape, motion, half_space, options.target_distance);
+        Search::run(&mut bodies, options, begin_in_contact, observer)
+    }
+}
+
+compiled_once! {
+    /// The least distance of a body from the half-space.
+    fn clearance_by_search<V>(
+        shape: Shape<'_, V>,
+        motion: &dyn Trajectory<Vector = V>,
+        half_space: &HalfSpace<V>,
+        options: MotionClearanceOptions<V>,
+        limit: V::Scalar,
+        observer: &mut dyn FnMut(MotionIterate<V>),
+    ) -> MotionClearance<V> {
+        let mut bodies = OverHalfSpace::new(shape, motion, half_space, Scalar::ZERO);
+        MotionClearance::of(&mut bodies, options, limit, observer)
     }
 }
 
@@ -107,7 +167,17 @@ struct OverHalfSpace<'s, V: Vector> {
     hint: Cell<Hint>,
 }
 
-impl<V: Vector> OverHalfSpace<'_, V> {
+impl<'s, V: Vector> OverHalfSpace<'s, V> {
+    fn new(
+        shape: Shape<'s, V>,
+        motion: &'s dyn Trajectory<Vector = V>,
+        half_space: &HalfSpace<V>,
+        margin: V::Scalar,
+    ) -> Self {
+        let (body, plane) = (MovingBody::new(shape, motion, margin), half_space.plane());
+        Self { body, margin, plane, iterations: Cell::new(0), hint: Cell::new(Hint::new()) }
+    }
+
     /// The height of the body's lowest point over the half-space at a time, less the target distance, and the lowest
     /// point of its core in the world.
     ///
@@ -131,6 +201,17 @@ impl<V: Vector> OverHalfSpace<'_, V> {
 }
 
 impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
+    fn aim(&mut self, target: V::Scalar) {
+        self.margin = target;
+        self.body.core.radius = self.body.shape.core().radius + target;
+    }
+
+    fn distance(&self, time: V::Scalar) -> Distance<V> {
+        let (height, core_point) = self.lowest(time);
+        let point = core_point - self.plane.unit * self.body.core.radius;
+        Lowest { height, point }.distance(self.plane.unit)
+    }
+
     fn size(&self) -> V::Scalar {
         self.body.core.extent + self.body.core.radius
     }

@@ -2,7 +2,7 @@
 
 use convex_support::{Scalar, Vector};
 
-use super::instant::{Instant, NEAR_IN_MOTION};
+use super::instant::{Instant, Limits, NEAR_IN_MOTION};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::SignedDistanceOptions;
@@ -10,11 +10,6 @@ use crate::body::{PointPair, TracedSupport as _};
 use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk};
 use crate::observer::Observer;
 use crate::unit::is_moderate;
-
-/// The width, relative to the distance, that the bracket of a rough distance may have. The time to look at next hardly
-/// depends on it, and the gap is proved however wide it is. A narrower bracket takes more support points, and a wider
-/// one more looks.
-const ROUGH: f64 = 0.2;
 
 /// Points in another unit.
 pub(super) fn times<V: Vector>(points: PointPair<V>, factor: V::Scalar) -> PointPair<V> {
@@ -27,7 +22,7 @@ impl<V: Vector> MovingPair<'_, V> {
     /// The search begins with the face that was closest at the last time. Mostly it still is, and one support point
     /// ends the search. If the bodies overlap by more than rounding, the best plane known tells roughly how deep, which
     /// is enough for the search of the motion.
-    pub(super) fn roughly(&self, placed: &Placed<'_, V>, axis: V, limit: V::Scalar) -> Option<Instant<V>> {
+    pub(super) fn roughly(&self, placed: &Placed<'_, V>, axis: V, limits: Limits<V::Scalar>) -> Option<Instant<V>> {
         let pair = &mut placed.pair();
         let size = pair.size(placed.offset);
         let kept = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
@@ -41,8 +36,8 @@ impl<V: Vector> MovingPair<'_, V> {
             Some(face) => Gjk::at_face(face.corners().map(in_unit), face.weights, face.v * per_unit),
         };
         let options = GjkOptions {
-            limit: limit * per_unit + radius,
-            tolerance: Scalar::from_f64(ROUGH),
+            limit: limits.distance * per_unit + radius,
+            tolerance: limits.rough,
             ..GjkOptions::new(state.normal, SignedDistanceOptions::<V>::new().max_iterations)
         };
         let end = gjk(&mut state, pair, frame, options, None, &mut Observer::none());

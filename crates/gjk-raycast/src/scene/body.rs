@@ -4,9 +4,9 @@ use convex_support::{AngularVelocity as _, Scalar as _, ScalarOf, SupportMap, Ve
 
 use crate::{
     ChainMotion, Contact, Distance, DistanceOptions, HalfSpace, Impact, LinearCast, LinearCastOptions, Motion,
-    MotionCast, MotionCastOptions, MotionIterate, Ray, RayCast, RayCastError, RayCastOptions, RigidMotion,
-    SignedDistance, SignedDistanceOptions, Trajectory, contact, distance, linear_cast, motion_cast, motion_cast_with,
-    ray_cast, signed_distance,
+    MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate, Ray, RayCast, RayCastError,
+    RayCastOptions, RigidMotion, SignedDistance, SignedDistanceOptions, Trajectory, contact, distance, linear_cast,
+    motion_cast, motion_cast_with, motion_clearance, ray_cast, signed_distance,
 };
 
 /// A body of a [`Scene`](crate::Scene): a bounded shape, or a half-space.
@@ -112,6 +112,35 @@ impl<S: SupportMap> Body<S> {
             Self::Convex(body) => motion_cast_with(shape, motion, body, RigidMotion::default(), options, observer),
             Self::HalfSpace(half_space) => half_space.motion_cast_with(shape, motion, options, observer),
         }
+    }
+
+    /// The least distance of a shape, `a`, and this body, `b`, as both move, by
+    /// [`motion_clearance`](crate::motion_clearance()); the body may be a half-space.
+    ///
+    /// # Errors
+    /// Those of [`motion_clearance`](crate::motion_clearance()).
+    pub fn motion_clearance_of_both<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: RigidMotion<S::Vector>,
+        of_body: RigidMotion<S::Vector>,
+        options: MotionClearanceOptions<S::Vector>,
+    ) -> Result<MotionClearance<S::Vector>, RayCastError> {
+        let half_space = match self {
+            Self::Convex(body) => return motion_clearance(shape, motion, body, of_body, options),
+            Self::HalfSpace(half_space) if of_body == RigidMotion::default() => {
+                return half_space.motion_clearance(shape, motion, options);
+            }
+            Self::HalfSpace(half_space) => half_space,
+        };
+        let least = half_space.motion_clearance(shape, ChainMotion::new(&seen_from(of_body, motion)), options)?;
+        let place = of_body.displacement(least.time);
+        Ok(MotionClearance {
+            point_a: place.of(least.point_a),
+            point_b: place.of(least.point_b),
+            normal: least.normal.map(|normal| place.rotation() * normal),
+            ..least
+        })
     }
 
     /// The cast of a shape, `a`, and this body, `b`, as both move, by [`motion_cast`](crate::motion_cast()); the body
