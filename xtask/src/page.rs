@@ -70,7 +70,7 @@ fn build() -> Result<PathBuf, String> {
     }
     let poses = String::from_utf8(read(Path::new(POSES))?).map_err(|why| why.to_string())?;
     write("museum.json", museum(&poses).as_bytes())?;
-    Ok(folder)
+    folder.canonicalize().map_err(|why| why.to_string())
 }
 
 /// Compiles the engine for the plane or for space.

@@ -207,7 +207,7 @@ const QUERIES: &[(&str, Reader)] = &[
 ];
 
 /// Those of the page. The last has points of any dimension, and is left to the engine for space.
-const OF_PAGE: &[(&str, Reader)] = &[
+const OF_PAGE: [(&str, Reader); 8] = [
     ("ray_cast", read::<RayCast>),
     ("distance", read::<Distance>),
     ("signed_distance", read::<SignedDistance>),
@@ -218,11 +218,17 @@ const OF_PAGE: &[(&str, Reader)] = &[
     ("enclosing_ellipsoid", read::<Enclosing>),
 ];
 
+/// A list of its own: what refers to a part of the other one has all of its functions.
+const OF_PLANE: [(&str, Reader); 7] = {
+    let [a, b, c, d, e, f, g, _] = OF_PAGE;
+    [a, b, c, d, e, f, g]
+};
+
 /// Those of this engine.
 const KNOWN: &[(&str, Reader)] = if IS_FOR_PLANE {
-    OF_PAGE.split_at(OF_PAGE.len() - 1).0
+    &OF_PLANE
 } else if IS_FOR_SPACE {
-    OF_PAGE
+    &OF_PAGE
 } else {
     QUERIES
 };
