@@ -7,26 +7,42 @@
     reason = "a field of this unpublished package is told by its name, where nothing more is to say"
 )]
 
-pub mod bits;
-mod claims;
 pub mod columns;
-pub mod docs;
 mod draw;
 pub mod engine;
-pub mod follow;
-pub mod footprint;
-pub mod fuzz;
-pub mod judge;
 pub mod mesh;
-pub mod museum;
 pub mod output;
-pub mod paths;
-pub mod plot;
 pub mod prove;
 pub mod query;
-pub mod table;
-pub mod validate;
 pub mod wire;
+
+// All else are tasks of a command line. The page in a browser, for `target_os` "unknown", has none.
+#[cfg(not(target_os = "unknown"))]
+pub mod bits;
+#[cfg(not(target_os = "unknown"))]
+mod claims;
+#[cfg(not(target_os = "unknown"))]
+pub mod docs;
+#[cfg(not(target_os = "unknown"))]
+pub mod follow;
+#[cfg(not(target_os = "unknown"))]
+pub mod footprint;
+#[cfg(not(target_os = "unknown"))]
+pub mod fuzz;
+#[cfg(not(target_os = "unknown"))]
+pub mod judge;
+#[cfg(not(target_os = "unknown"))]
+pub mod museum;
+#[cfg(not(target_os = "unknown"))]
+pub mod page;
+#[cfg(not(target_os = "unknown"))]
+pub mod paths;
+#[cfg(not(target_os = "unknown"))]
+pub mod plot;
+#[cfg(not(target_os = "unknown"))]
+pub mod table;
+#[cfg(not(target_os = "unknown"))]
+pub mod validate;
 
 /// The folder of the embedded suite: what is validated where no files are named.
 pub const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/suite");

@@ -9,7 +9,7 @@ use std::io::{self, Write};
 use std::process::{Command, ExitCode};
 
 use clap::{Args, Parser, Subcommand};
-use xtask::{bits, docs, follow, footprint, fuzz, museum, paths, prove, query, validate};
+use xtask::{bits, docs, follow, footprint, fuzz, museum, page, paths, prove, query, validate};
 
 /// Answers query files, validates the crates against true answers, and draws what they do.
 #[derive(Debug, Parser)]
@@ -58,6 +58,10 @@ enum Task {
     ///
     /// Exit status: 0 if every answer is right, 1 if some answer is wrong, 2 if a file could not be read or written.
     Museum(museum::Choice),
+    /// Build the page in the browser into `target/page`: drag two bodies, and see the proof.
+    ///
+    /// Exit status: 0, or 2 if it does not build, as where the target wasm32-unknown-unknown is missing.
+    Page(page::Choice),
     /// Build the API documentation of the libraries as docs.rs does, and check that no link leads nowhere.
     ///
     /// Exit status: 0, or 1 if a note or page has a link that leads nowhere, or 2 if the documentation does not build.
@@ -110,6 +114,7 @@ fn main() -> ExitCode {
         Task::Fuzz(scope) => fuzz::run(&scope),
         Task::Bits(choice) => bits::run(&choice),
         Task::Museum(choice) => museum::run(choice),
+        Task::Page(choice) => page::run(&choice),
         Task::Docs => docs::run(),
         Task::Footprint(choice) => footprint::run(&choice),
         Task::Follow(choice) => follow::run(&choice),

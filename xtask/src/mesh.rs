@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{InvalidShape, Polytope};
 
+use crate::engine::IN_BROWSER;
 use crate::wire::error::{Kind, Problem};
 
 /// The vertices of a mesh, and their hull once it has been asked for.
@@ -166,6 +167,9 @@ impl From<io::Error> for Unread {
 
 /// The distinct vertices of an OBJ or STL file, told apart by the extension, in the order of the file.
 fn read(path: &Path, access: &Access) -> Result<Vec<DVec3>, Unread> {
+    if IN_BROWSER {
+        return Err(Unread::Forbidden);
+    }
     type Parse = fn(Vec<u8>) -> Result<Vec<DVec3>, String>;
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let parse: Parse = match extension.as_str() {

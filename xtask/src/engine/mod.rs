@@ -61,6 +61,13 @@ use crate::wire::fields::{Dimension, Fields, Object, Written};
 use crate::wire::names::Names;
 use crate::wire::shape::Space;
 
+/// Whether this is the engine of the page in a browser (`xtask/page`), which everybody who opens it downloads first: it
+/// answers in double precision, and neither judges itself nor reads files.
+pub const IN_BROWSER: bool = cfg!(all(target_family = "wasm", target_os = "unknown"));
+/// The page has an engine for the plane, with which it opens, and one for space.
+const IS_FOR_PLANE: bool = IN_BROWSER && cfg!(feature = "page-plane");
+const IS_FOR_SPACE: bool = IN_BROWSER && cfg!(feature = "page-space");
+
 /// A query with its shapes built, ready to be solved.
 trait Question {
     type Solution: Debug;
@@ -127,6 +134,9 @@ impl<Q: Question> Ask for Q {
     }
 
     fn ask_everything(&self) -> Result<String, Problem> {
+        if IN_BROWSER {
+            return Err(left_out("everything that is said of an answer"));
+        }
         let (solution, certificate) = self.prove()?;
         let mut said = format!("{solution:?} {}", self.beside(&solution));
         let answer = in_range(self.answer(solution)?).map_err(|problem| problem.message);
@@ -135,7 +145,7 @@ impl<Q: Question> Ask for Q {
     }
 
     fn claims(&self, starts: &[Numbers], planes: PairPlanes<'_>) -> Option<Report> {
-        Question::claims(self, starts, planes)
+        if IN_BROWSER { None } else { Question::claims(self, starts, planes) }
     }
 
     fn time(&self, microseconds: u64) -> f64 {
@@ -158,6 +168,11 @@ fn in_range(answer: Answer) -> Result<Answer, Problem> {
         Some(field) => Err(Problem::new(Kind::NotConverged, format!("{field} is out of the range of the precision"))),
         None => Ok(answer),
     }
+}
+
+/// What a browser is not asked to download.
+fn left_out(what: &str) -> Problem {
+    Problem::new(Kind::UnknownQuery, format!("{what} is answered by `cargo xtask query`, not in a browser"))
 }
 
 /// What proves an answer, as the format says it.
@@ -197,6 +212,39 @@ const QUERIES: &[(&str, Reader)] = &[
     ("clearance", read::<Clearance>),
 ];
 
+/// Those of the page. The last has points of any dimension, and is left to the engine for space.
+const OF_PAGE: [(&str, Reader); 8] = [
+    ("ray_cast", read::<RayCast>),
+    ("distance", read::<Distance>),
+    ("signed_distance", read::<SignedDistance>),
+    ("intersect", read::<Intersect>),
+    ("linear_cast", read::<LinearCast>),
+    ("motion_cast", read::<MotionCast>),
+    ("margin", read::<Margin>),
+    ("enclosing_ellipsoid", read::<Enclosing>),
+];
+
+/// A list of its own: what refers to a part of the other one has all of its functions.
+const OF_PLANE: [(&str, Reader); 7] = {
+    let [a, b, c, d, e, f, g, _] = OF_PAGE;
+    [a, b, c, d, e, f, g]
+};
+
+/// Those of this engine.
+const KNOWN: &[(&str, Reader)] = if IS_FOR_PLANE {
+    &OF_PLANE
+} else if IS_FOR_SPACE {
+    &OF_PAGE
+} else {
+    QUERIES
+};
+
+/// Whether queries of this kind are answered in a browser too.
+#[must_use]
+pub fn is_of_page(kind: &str) -> bool {
+    OF_PAGE.iter().any(|(name, _)| *name == kind)
+}
+
 type Reader = fn(Written<'_>, &Dimension, &Meshes) -> Result<Box<dyn Ask>, Problem>;
 
 /// The fields that a query of any kind may have.
@@ -210,7 +258,7 @@ const EVERY: Names =
 pub fn question(object: &Object, meshes: &Meshes) -> Result<Box<dyn Ask>, Problem> {
     let dimension = Dimension::default();
     let written = Written::new(object, &dimension);
-    let read = written.named("query", QUERIES.iter().copied(), Kind::UnknownQuery)?;
+    let read = written.named("query", KNOWN.iter().copied(), Kind::UnknownQuery)?;
     read(written, &dimension, meshes)
 }
 
@@ -249,8 +297,11 @@ fn read<Q: Query>(written: Written<'_>, dimension: &Dimension, meshes: &Meshes) 
     let how = How { precision, tol: fields.positive("tol")?, method: fields.maybe("method")?, meshes };
     let query = Q::read(&fields)?;
     match (precision, dimension.known().unwrap_or(3)) {
+        (Precision::F64, 2) if IS_FOR_SPACE => Err(left_out("the plane")),
         (Precision::F64, 2) => query.question::<DVec2>(&how),
+        (Precision::F64, _) if IS_FOR_PLANE => Err(left_out("space")),
         (Precision::F64, _) => query.question::<DVec3>(&how),
+        (Precision::F32, _) if IN_BROWSER => Err(left_out("single precision")),
         (Precision::F32, 2) => query.question::<Vec2>(&how),
         (Precision::F32, _) => query.question::<Vec3A>(&how),
     }

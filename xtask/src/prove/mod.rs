@@ -156,7 +156,7 @@ impl Counts {
 }
 
 /// The verdict on a line, and what is said of it.
-pub(crate) fn judge_line(line: &[u8], meshes: &Meshes) -> (Verdict, Value) {
+pub fn judge_line(line: &[u8], meshes: &Meshes) -> (Verdict, Value) {
     let judged: Result<Proof, Unread> = json::object(line.trim_ascii()).map_err(|why| why.message).and_then(|line| {
         let mesh = |path: &str| {
             let mesh = meshes.load(Path::new(path)).map_err(|why| why.message)?;
