@@ -89,7 +89,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // What it touches.
     let mut contacts = Vec::new();
     level.all().contacts_of(&character.body()?, 2.0 * SKIN, SignedDistanceOptions::default(), &mut contacts);
-    for BodyContact { body, contact } in &contacts {
+    for BodyContact { body, contact, .. } in &contacts {
         println!("touches body {body} in {} points, normal {:.3}", contact.points().len(), contact.normal);
         assert!((contact.distance.signed_distance - SKIN).abs() < 1e-3, "{}", contact.distance.signed_distance);
     }

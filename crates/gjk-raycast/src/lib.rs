@@ -204,8 +204,8 @@ pub use ray_casts::{RayEntry, ray_casts, ray_entries_into};
 pub use ray_exit::{RayExit, ray_exit};
 pub use scene::among::Among;
 pub use scene::{
-    Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, Scene, SceneAnyHit,
-    SceneCast, SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast,
+    Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, Group, Instance, PairContact, PairDistance, Scene,
+    SceneAnyHit, SceneCast, SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast,
     SceneSignedDistance, Work,
 };
 pub use separation::{Distance, SignedDistance, SignedDistanceOptions};
