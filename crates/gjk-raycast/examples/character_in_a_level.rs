@@ -117,7 +117,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         SignedDistanceOptions::default(),
         &mut contacts,
     );
-    for BodyContact { body, contact } in &contacts {
+    for BodyContact { body, contact, .. } in &contacts {
         let name = level.entities[*body].name;
         println!("touches the {name} in {} points, normal {:.3}", contact.points().len(), contact.normal);
         assert!((contact.distance.signed_distance - SKIN).abs() < 1e-3, "{}", contact.distance.signed_distance);

@@ -218,9 +218,9 @@ pub use ray_casts::{RayEntry, ray_casts, ray_entries_into};
 pub use ray_exit::{RayExit, ray_exit};
 pub use scene::among::Among;
 pub use scene::{
-    Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, Scene, SceneAnyHit,
-    SceneAnyWithin, SceneCast, SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, ScenePair,
-    SceneRayCast, SceneSignedDistance, Work,
+    Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, Group, Instance, PairContact, PairDistance, Scene,
+    SceneAnyHit, SceneAnyWithin, SceneCast, SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast,
+    ScenePair, SceneRayCast, SceneSignedDistance, Work,
 };
 pub use separation::{Distance, SignedDistance, SignedDistanceOptions};
 pub use signed_distance::{signed_distance, signed_distance_with};

@@ -8,7 +8,7 @@ use convex_support::{
     Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap, Vector, support_value,
 };
 use gjk_raycast::{
-    Body, HalfSpace, Joint, JointBounds, JointBoxOutcome, JointKind, JointState, JointTrajectory, Link, Linkage,
+    Body, Group, HalfSpace, Joint, JointBounds, JointBoxOutcome, JointKind, JointState, JointTrajectory, Link, Linkage,
     LinkageError, Met, MotionCastOptions, Path, PathContact, PathWorkspace, Pose, RayCastError, Scene,
     SignedDistanceOptions, Status, signed_distance,
 };
@@ -781,4 +781,40 @@ fn brackets_hold_in_single_precision() -> Result<(), Box<dyn std::error::Error>>
         assert!(lower <= truth && truth <= upper && upper - lower < 1e-4, "{truth} is not in {contact:?}");
     }
     Ok(())
+}
+
+/// The members of an instance are obstacles each, and whoever sees the proof sees all of them.
+#[test]
+fn a_path_meets_the_members_of_an_instance() {
+    let (robot, options) = (arm(), MotionCastOptions::new());
+    let places = [[1.7, 0.4], [0.2, 1.6], [-0.9, 1.2], [4.0, 4.0]].map(|[x, y]| DVec2::new(x, y));
+    let group = Scene::new(places.map(|at| ball_at(at.x, at.y))).expect("finite");
+    let group = Group::new(group).expect("four members");
+    let mut met = Vec::new();
+    for k in 0..200 {
+        let number = f64::from(k);
+        let pose = Pose { rotation: 0.3 * number, translation: DVec2::new((0.7 * number).sin(), (1.1 * number).cos()) };
+        let mut scene = Scene::<Posed<Ball<DVec2>>>::default();
+        scene.insert_group(&group, pose).expect("a pose");
+        let alone = places.map(|at| Posed::new(ball_at(at.x, at.y), pose.rotation, pose.translation).expect("finite"));
+        let alone = Scene::new(alone).expect("finite");
+        let ways = [vec![0.0, 0.0], vec![(0.37 * number).sin() * 2.0, 0.5], vec![2.5, -1.0]];
+        let mut workspace = PathWorkspace::new();
+        let path = robot.path(&ways, &scene, options, &mut workspace).expect("a path");
+        let due = robot.path(&ways, &alone, options, &mut workspace).expect("a path");
+        assert_eq!(path.is_free(), due.is_free());
+        if let (Some((contact, hit)), Some((flat, due))) = (path.contact(), due.contact()) {
+            assert!((hit.time - due.time).abs() < 1e-12 && contact.edge == flat.edge, "{contact:?} {flat:?}");
+            let Met::Member { obstacle: 0, member } = contact.met else { panic!("{contact:?}") };
+            assert_eq!((flat.met, flat.link), (Met::Obstacle(member), contact.link), "{contact:?} {flat:?}");
+            met.push(member);
+        }
+        let mut seen = std::collections::BTreeSet::new();
+        let watched = robot.path_with(&ways, &scene, options, &mut workspace, |free| {
+            seen.insert((free.edge, free.link, format!("{:?}", free.met)));
+        });
+        assert_eq!(watched.expect("a path").is_free(), path.is_free());
+        assert!(!path.is_free() || seen.len() == 2 * (2 * 4), "each link and each member on each edge: {seen:?}");
+    }
+    assert!(met.len() > 20 && [0, 1, 2].iter().all(|member| met.contains(member)), "{met:?}");
 }

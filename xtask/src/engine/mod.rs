@@ -496,6 +496,46 @@ mod tests {
         }
     }
 
+    /// Three balls in a row along x: the first alone, and the others in a group, in a group.
+    #[test]
+    fn answers_name_the_member_of_a_group() {
+        let ball = |x: i32| format!(r#"{{"type":"posed","translation":[{x},0],"of":{{"type":"ball","radius":1}}}}"#);
+        let group = |at: &str, of: &str| format!(r#"{{"type":"group","translation":{at},"of":[{of}]}}"#);
+        let inner = group("[0,-1]", &[ball(4), ball(8)].join(","));
+        let outer = group("[0,1]", &[ball(90), inner].join(","));
+        let asks = r#"{"ray":{"source":[20,0],"direction":[-1,0]}},{"ray":{"source":[2,0],"direction":[1,0],"all":true}},
+            {"nearest":{"type":"point","at":[0,0]}},{"nearest":{"type":"point","at":[90,1]}},{"pairs_within":2},
+            {"contacts_within":2}"#;
+        let line = format!(r#"{{"query":"scene","bodies":[{},{outer}],"asks":[{asks}]}}"#, ball(0));
+        let answers = &answered(&line)["answers"];
+        assert_eq!(
+            (&answers[0]["body"], &answers[0]["member"], &answers[0]["lambda"]),
+            (&1.into(), &[1, 1][..].into(), &11.0.into())
+        );
+        let hits: Vec<_> = [0, 1].map(|i| (&answers[1]["hits"][i]["member"], &answers[1]["hits"][i]["lambda"])).into();
+        assert_eq!(hits, [(&[1, 0][..].into(), &1.0.into()), (&[1, 1][..].into(), &5.0.into())]);
+        assert_eq!((&answers[2]["body"], answers[2].get("member")), (&0.into(), None));
+        assert_eq!((&answers[3]["body"], &answers[3]["member"]), (&1.into(), &0.into()));
+        assert_eq!(answers[4]["pairs"], serde_json::json!([[0, 1]]), "members of one body make no pairs");
+        let contact = &answers[5]["contacts"][0];
+        assert_eq!((&contact["b"], &contact["member_b"]), (&1.into(), &[1, 0][..].into()));
+        assert!(contact.get("member_a").is_none() && contact["signed_distance"] == 2.0, "{contact}");
+
+        let none = r#"{"type":"ball","radius":1}"#;
+        let asked = |body: &str| refused(&format!(r#"{{"query":"scene","bodies":[{none},{body}],"asks":[]}}"#));
+        let empty = asked(&group("[0,0]", &group("[0,0]", "")));
+        assert_eq!(empty.kind, Kind::InvalidShape);
+        assert!(empty.message.starts_with("bodies[1].of[0].of: a group has no members"), "{empty:?}");
+        let floor = asked(&group("[0,0]", r#"{"type":"half_space","normal":[0,1],"offset":0}"#));
+        assert!(floor.message.starts_with("bodies[1].of[0] is a half-space"), "{floor:?}");
+        let deep = (0..17).fold(ball(0), |of, _| group("[0,0]", &of));
+        assert_eq!(asked(&deep).kind, Kind::InvalidShape, "nested too deep");
+        let deep = (0..200).fold(ball(0), |of, _| group("[0,0]", &of));
+        assert_eq!(json::object(deep.as_bytes()).expect_err("too deep").kind, Kind::Parse);
+        let pair = refused(&format!(r#"{{"query":"distance","a":{none},"b":{}}}"#, group("[0,0]", none)));
+        assert_eq!(pair.kind, Kind::UnknownShape, "only scenes have groups");
+    }
+
     #[test]
     fn remarks_are_read_by_nobody_wherever_they_stand() {
         let b = r#"{"type":"half_space","normal":[0,1],"offset":0,"_why":"the floor"}"#;

@@ -8,11 +8,10 @@ use gjk_raycast::{FreeInterval, Linkage, Met, MotionCastOptions, PathContact, Pa
 #[cfg(target_family = "wasm")]
 use std::time::Instant as ThreadTime;
 
-use super::scene::{refused, scene_of};
 use super::{Ask, EVERY, How, Precision, Query, Question, meeting, path_picture, scalar, status};
 use crate::mesh::Meshes;
 use crate::wire::answer::{Answer, Field, Number};
-use crate::wire::body::Body;
+use crate::wire::body::{Body, Built, refused, scene_of};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::{Dimension, Fields, Object, Written};
 use crate::wire::linkage::{self, problem};
@@ -53,7 +52,7 @@ impl Path {
     /// The way of the robot in a space.
     fn way<V: Space>(&self, how: &How<'_>) -> Result<Way<V>, Problem> {
         how.method(&[("gjk", ())])?;
-        let build = |(i, body): (usize, &Body)| body.build(&format!("obstacles[{i}]"), how.meshes);
+        let build = |(i, body): (usize, &Body)| body.build(&format!("obstacles[{i}]"), how.meshes).map(Built::Body);
         let obstacles = self.obstacles.iter().enumerate().map(build).collect::<Result<Vec<_>, _>>()?;
         let mut options = MotionCastOptions::new().with_target_distance(scalar::<V>(self.target_distance));
         options.tolerance = how.tolerance::<V>()?.unwrap_or(options.tolerance);
@@ -149,6 +148,7 @@ impl<V: Space> Way<V> {
         let a = placed(link, body)?;
         Some(match met {
             Met::Obstacle(obstacle) => meeting(&a, self.scene.get(obstacle)?.convex()?),
+            Met::Member { obstacle, member } => meeting(&a, &self.scene.member(obstacle, member)?),
             Met::Link { link, body } => meeting(&a, &placed(link, body)?),
         })
     }
@@ -157,7 +157,7 @@ impl<V: Space> Way<V> {
 /// With what is met, or not.
 fn of_what(answer: Answer, met: Met) -> Answer {
     match met {
-        Met::Obstacle(obstacle) => answer.with("obstacle", Field::Count(obstacle)),
+        Met::Obstacle(obstacle) | Met::Member { obstacle, .. } => answer.with("obstacle", Field::Count(obstacle)),
         Met::Link { link, body } => {
             answer.with("other_link", Field::Count(link)).with("other_body", Field::Count(body))
         }

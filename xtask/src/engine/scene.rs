@@ -3,14 +3,14 @@
 use convex_support::{Scalar, Vector};
 use gjk_raycast::{
     BodyHit, DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, PairContact, Ray, RayCastOptions, RayHit,
-    RigidMotion, SceneCast, SceneError, SignedDistanceOptions,
+    RigidMotion, SceneCast, SignedDistanceOptions,
 };
 
 use super::cast::{Limits, RaySpec, problem};
 use super::distance::certain;
 use super::{Ask, How, Query, Question, scalar, signed_distance};
 use crate::wire::answer::{Answer, Field};
-use crate::wire::body::Body;
+use crate::wire::body::{Element, refused, scene_of};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::{Coordinates, Fields, Written};
 use crate::wire::motion::Motion as RigidSpec;
@@ -19,7 +19,7 @@ use crate::wire::shape::{Shape, Solid, Space, vector};
 
 /// The query as written.
 pub(super) struct Scene {
-    bodies: Vec<Body>,
+    bodies: Vec<Element>,
     asks: Vec<Spec>,
 }
 
@@ -41,14 +41,14 @@ impl Query for Scene {
 
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
         Ok(Self {
-            bodies: fields.each("bodies")?.into_iter().map(Body::read).collect::<Result<_, _>>()?,
+            bodies: fields.each("bodies")?.into_iter().map(Element::read).collect::<Result<_, _>>()?,
             asks: fields.each("asks")?.into_iter().map(Spec::read).collect::<Result<_, _>>()?,
         })
     }
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
         how.method(&[("gjk", ())])?;
-        let build = |(i, body): (usize, &Body)| body.build(&format!("bodies[{i}]"), how.meshes);
+        let build = |(i, body): (usize, &Element)| body.build(&format!("bodies[{i}]"), how.meshes);
         let bodies = self.bodies.iter().enumerate().map(build).collect::<Result<Vec<_>, _>>()?;
         let ask = |(i, spec): (usize, &Spec)| spec.build(&format!("asks[{i}]"), how);
         let asks = self.asks.iter().enumerate().map(ask).collect::<Result<_, _>>()?;
@@ -113,35 +113,6 @@ impl Spec {
             Self::ContactsWithin(within) => One::ContactsWithin(scalar::<V>(*within), signed_distance::options(how)?),
         })
     }
-}
-
-/// The scene of these bodies, with indices in their order: built at once up to the first half-space.
-pub(super) fn scene_of<V: Vector>(
-    mut bodies: Vec<gjk_raycast::Body<Solid<V>>>,
-) -> Result<gjk_raycast::Scene<Solid<V>>, SceneError> {
-    use gjk_raycast::Body::{Convex, HalfSpace};
-    let first = bodies.iter().position(|body| body.convex().is_none()).unwrap_or(bodies.len());
-    let rest = bodies.split_off(first);
-    let convex = |body| if let Convex(body) = body { Some(body) } else { None };
-    let mut scene = gjk_raycast::Scene::new(bodies.into_iter().filter_map(convex))?;
-    for body in rest {
-        match body {
-            Convex(body) => scene.insert(body)?,
-            HalfSpace(half_space) => scene.insert_half_space(half_space),
-        };
-    }
-    Ok(scene)
-}
-
-/// A body that has no place in a scene.
-pub(super) fn refused(why: SceneError, list: &str) -> Problem {
-    let message = match why {
-        SceneError::NotFinite { body } => {
-            format!("the box of {list}[{body}] is not finite in the precision asked for")
-        }
-        other => other.to_string(),
-    };
-    Problem::new(Kind::NonFinite, message)
 }
 
 /// A scene and the questions to it.
@@ -239,14 +210,18 @@ impl<V: Space> One<V> {
     fn answer(&self, scene: &gjk_raycast::Scene<Solid<V>>) -> Result<Answer, Problem> {
         match self {
             Self::Ray(ray, options) => {
-                first("lambda", &scene.all().ray_cast(*ray, *options).map_err(problem)?, |hit| hit.lambda)
+                first(scene, "lambda", &scene.all().ray_cast(*ray, *options).map_err(problem)?, |hit| hit.lambda)
             }
             Self::EveryHit(ray, options) => every_hit(scene, *ray, *options),
             Self::LinearCast(shape, motion, options) => {
-                first("time", &scene.all().linear_cast(shape, *motion, *options).map_err(problem)?, |hit| hit.time)
+                first(scene, "time", &scene.all().linear_cast(shape, *motion, *options).map_err(problem)?, |hit| {
+                    hit.time
+                })
             }
             Self::MotionCast(shape, motion, options) => {
-                first("time", &scene.all().motion_cast(shape, *motion, *options).map_err(problem)?, |hit| hit.time)
+                first(scene, "time", &scene.all().motion_cast(shape, *motion, *options).map_err(problem)?, |hit| {
+                    hit.time
+                })
             }
             Self::Nearest(shape, options) => nearest(scene, shape, *options),
             Self::PairsWithin(within, options) => pairs(scene, *within, *options),
@@ -255,33 +230,49 @@ impl<V: Space> One<V> {
     }
 }
 
-/// The first hit of a cast; `scalar` gives its λ or time, which the format calls `name`.
-fn first<H, S: Scalar>(
+/// The first hit of a cast, if there is one, and whether that is certain; `scalar` gives its λ or time, which the format
+/// calls `name`.
+fn first<V: Space, H>(
+    scene: &gjk_raycast::Scene<Solid<V>>,
     name: &'static str,
-    cast: &SceneCast<H, S>,
-    scalar: impl FnOnce(&H) -> S,
+    cast: &SceneCast<H, V::Scalar>,
+    scalar: impl FnOnce(&H) -> V::Scalar,
 ) -> Result<Answer, Problem> {
     if let Some(body) = cast.undecided {
         return Err(undecided(body));
     }
-    Ok(hit(name, cast.first.as_ref().map(|first| (first.body, scalar(&first.hit), [first.lower, first.upper]))))
-}
-
-/// The first hit, if there is one, and whether that is certain.
-fn hit<S: Scalar>(name: &'static str, first: Option<(usize, S, [S; 2])>) -> Answer {
-    let answer = Answer::default().with("hit", Field::Flag(first.is_some()));
-    let Some((body, scalar, bracket)) = first else { return answer.with("certain", Field::Flag(true)) };
-    hit_of(answer, body, (name, scalar), bracket)
+    let answer = Answer::default().with("hit", Field::Flag(cast.first.is_some()));
+    let Some(first) = &cast.first else { return Ok(answer.with("certain", Field::Flag(true))) };
+    Ok(hit_of(scene, answer, first, (name, scalar(&first.hit))))
 }
 
 /// With the body that is hit, the λ or time of it, its bracket, and whether it is certain.
-fn hit_of<S: Scalar>(answer: Answer, body: usize, (name, scalar): (&'static str, S), [lower, upper]: [S; 2]) -> Answer {
-    answer
-        .with("body", Field::Count(body))
+fn hit_of<V: Space, H>(
+    scene: &gjk_raycast::Scene<Solid<V>>,
+    answer: Answer,
+    &BodyHit { body, member, lower, upper, .. }: &BodyHit<H, V::Scalar>,
+    (name, scalar): (&'static str, V::Scalar),
+) -> Answer {
+    with_member(scene, answer.with("body", Field::Count(body)), "member", (body, member))
         .with(name, Field::number(scalar))
         .with_finite("lower", lower)
         .with_finite("upper", upper)
         .with_certain([lower, upper])
+}
+
+/// With the member that a body was, if that is a group: its index, or its indices from the outer group inwards.
+fn with_member<V: Space>(
+    scene: &gjk_raycast::Scene<Solid<V>>,
+    answer: Answer,
+    name: &'static str,
+    (body, member): (usize, Option<usize>),
+) -> Answer {
+    let path = member.and_then(|member| Some(scene.instance(body)?.group().path(member)));
+    match path.as_deref() {
+        None => answer,
+        Some([index]) => answer.with(name, Field::Count(*index)),
+        Some(indices) => answer.with(name, Field::Counts(indices.to_vec())),
+    }
 }
 
 /// All hits of a ray, in its order.
@@ -294,9 +285,8 @@ fn every_hit<V: Space>(
     if let Some(body) = scene.all().ray_cast_all(ray, options, &mut hits).map_err(problem)?.undecided {
         return Err(undecided(body));
     }
-    let one = |found: &BodyHit<RayHit<V>, V::Scalar>| {
-        hit_of(Answer::default(), found.body, ("lambda", found.hit.lambda), [found.lower, found.upper])
-    };
+    let one =
+        |found: &BodyHit<RayHit<V>, V::Scalar>| hit_of(scene, Answer::default(), found, ("lambda", found.hit.lambda));
     Ok(Answer::default().with("hits", Field::Answers(hits.iter().map(one).collect())))
 }
 
@@ -315,14 +305,14 @@ fn nearest<V: Space>(
         return Ok(Answer::default().with("body", Field::Null).with("distance", Field::Null));
     };
     certain(&found.distance)?;
-    Ok(Answer::default()
-        .with("body", Field::Count(found.body))
+    let answer = Answer::default().with("body", Field::Count(found.body));
+    Ok(with_member(scene, answer, "member", (found.body, found.member))
         .with("distance", Field::number(found.distance.distance))
         .with_finite("lower", found.distance.lower)
         .with_finite("upper", found.distance.upper))
 }
 
-/// The pairs no farther apart than `within`.
+/// The pairs no farther apart than `within`, each once, however many of their members are.
 fn pairs<V: Space>(
     scene: &gjk_raycast::Scene<Solid<V>>,
     within: V::Scalar,
@@ -331,7 +321,10 @@ fn pairs<V: Space>(
     let mut found = Vec::new();
     scene.all().pairs_within(within, options, &mut found);
     found.iter().try_for_each(|pair| certain(&pair.distance))?;
-    Ok(Answer::default().with("pairs", Field::Pairs(found.iter().map(|pair| [pair.a, pair.b]).collect())))
+    let mut pairs: Vec<_> = found.iter().map(|pair| [pair.a, pair.b]).collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    Ok(Answer::default().with("pairs", Field::Pairs(pairs)))
 }
 
 /// The contacts of the pairs no farther apart than `within`.
@@ -342,12 +335,12 @@ fn contacts<V: Space>(
 ) -> Result<Answer, Problem> {
     let mut found = Vec::new();
     scene.all().contacts_within(within, options, &mut found);
-    let one = |PairContact { a, b, contact }: &PairContact<V>| {
+    let one = |PairContact { a, b, member_a, member_b, contact }: &PairContact<V>| {
         let distance = &contact.distance;
         signed_distance::certain(distance, within).map_err(|why| why.at(&format!("bodies[{a}] and bodies[{b}]")))?;
-        Ok(Answer::default()
-            .with("a", Field::Count(*a))
-            .with("b", Field::Count(*b))
+        let answer = Answer::default().with("a", Field::Count(*a)).with("b", Field::Count(*b));
+        let answer = with_member(scene, answer, "member_a", (*a, *member_a));
+        Ok(with_member(scene, answer, "member_b", (*b, *member_b))
             .with("signed_distance", Field::number(distance.signed_distance))
             .with("normal", Field::vector(contact.normal))
             .with("points", Field::Count(contact.points().len()))

@@ -205,6 +205,12 @@ impl<V: Vector> BoxDistance<V> {
     pub fn new(of: Aabb<V>) -> Self {
         Self { of }
     }
+
+    /// The box that distances are from.
+    #[must_use]
+    pub fn of(&self) -> Aabb<V> {
+        self.of
+    }
 }
 
 impl<V: Vector> Bound<V> for BoxDistance<V> {

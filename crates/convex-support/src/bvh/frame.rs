@@ -108,6 +108,19 @@ impl<V: Vector> Frame<V> {
         Aabb { min: step_down(min), max: -step_down(max) }
     }
 
+    /// A box of this frame in the world, with room for the rounding of both.
+    pub(super) fn in_world(&self, around: &Aabb<Vec3A>) -> Aabb<V> {
+        let at = |axis: usize, c: f32, out: f64| {
+            let (c, origin) = (f64::from(c), self.origin.get(axis).as_f64());
+            let world = c / self.per_unit + origin;
+            V::Scalar::from_f64(world + out * 4.0 * V::Scalar::EPSILON.as_f64() * (origin.abs() + world.abs()))
+        };
+        Aabb {
+            min: V::from_fn(|axis| at(axis, around.min[axis], -1.0)),
+            max: V::from_fn(|axis| at(axis, around.max[axis], 1.0)),
+        }
+    }
+
     /// A box of another frame in this one.
     pub(super) fn outwards_from(&self, other: &Self, around: &Aabb<Vec3A>) -> Aabb<Vec3A> {
         // The rounding of double precision is small against a step of single precision, of the other frame's coordinate

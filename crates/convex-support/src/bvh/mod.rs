@@ -85,6 +85,13 @@ impl<V: Vector> Bvh<V> {
         self.len() == 0
     }
 
+    /// A box around all items, by the box of the root, so that it is a little larger than need be: by 2⁻²¹ of its
+    /// distance from the tree's origin. `None` if there are no items.
+    #[must_use]
+    pub fn around(&self) -> Option<Aabb<V>> {
+        (!self.is_empty()).then(|| self.frame.in_world(&self.nodes[0].boxes.union()))
+    }
+
     /// The box of an item; `None` if it is not in the tree.
     #[must_use]
     pub fn get(&self, item: usize) -> Option<Aabb<V>> {

@@ -69,6 +69,11 @@ struct Errors {
 impl Errors {
     const NONE: Self = Self { entry: 0.0, operator: 0.0 };
 
+    /// Those that a pose can have.
+    fn known<V: Vector>() -> [Self; 3] {
+        [Self::NONE, Self::of_rotation::<V>(), POLISHED]
+    }
+
     /// Those of the matrix of a rotation.
     #[inline(always)]
     fn of_rotation<V: Vector>() -> Self {
@@ -126,6 +131,19 @@ impl<S: SupportMap> Posed<S> {
         Self::at(shape, polished, if polished == rotation { Errors::NONE } else { POLISHED }, translation)
     }
 
+    /// Another shape in the pose of this one: the numbers are those that the same constructor would make for it.
+    ///
+    /// # Errors
+    /// [`InvalidShape::TooLarge`] if the origin of the moved shape is not finite.
+    pub fn with_shape<T: SupportMap<Vector = S::Vector>>(&self, shape: T) -> Result<Posed<T>, InvalidShape> {
+        if self.rotation_error == Scalar::ZERO && self.rotation == Matrix::IDENTITY {
+            return Posed::translated(shape, self.translation);
+        }
+        let is_it = |errors: &Errors| ScalarOf::<S>::from_f64(errors.entry) == self.rotation_error;
+        let errors = Errors::known::<S::Vector>().into_iter().find(is_it).unwrap_or(POLISHED);
+        Posed::at(shape, self.rotation, errors, self.translation)
+    }
+
     /// The shape in the pose of another one, from its matrix and the [error](Self::rotation_error) of that. A matrix
     /// without an error is exact, or comes from elsewhere, and may have drifted.
     #[cfg(feature = "serde")]
@@ -135,7 +153,7 @@ impl<S: SupportMap> Posed<S> {
         translation: S::Vector,
         rotation_error: f64,
     ) -> Result<Self, InvalidShape> {
-        let known = [Errors::NONE, Errors::of_rotation::<S::Vector>(), POLISHED];
+        let known = Errors::known::<S::Vector>();
         let entry = crate::error::known_error("rotation_error", rotation_error, &known.each_ref().map(|e| e.entry))?;
         match known.into_iter().find(|errors| errors.entry == entry && entry > 0.0) {
             Some(errors) => Self::at(shape, proper(rotation)?, errors, translation),

@@ -177,7 +177,7 @@ impl<V: Vector3> World<V> {
             scene.leave_out_seams_of_pairs(&mut contacts);
         }
         let mut touches = Vec::new();
-        for &PairContact { a, b, contact } in &contacts {
+        for &PairContact { a, b, contact, .. } in &contacts {
             let [along, across] = contact.tangents();
             for point in contact.points() {
                 let key = (a, b, point.feature_a, point.feature_b);

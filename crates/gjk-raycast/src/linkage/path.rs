@@ -1,5 +1,7 @@
 //! Whether a linkage touches anything along a path.
 
+use core::ops::ControlFlow;
+
 use convex_support::{Core, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
@@ -196,11 +198,31 @@ impl<S: SupportMap> Linkage<S> {
                 casts += 1;
                 let options = options.with_max_time(duration);
                 let next = if let Some(base) = self.skeleton.views[near.view].base {
+                    let met = Met::Link { link: base, body: near.other };
                     let base = Body::Convex(&self.bodies[base][near.other]);
-                    self.cast(index, near, &motion, (&base, None), options, &mut observer)?
+                    self.cast((index, met), near, &motion, (&base, None), options, &mut observer)?
                 } else if let Some(obstacle) = scene.get(near.other) {
                     let at = scene.tree().get(near.other).map(|around| around.center());
-                    self.cast(index, near, &motion, (obstacle, at), options, &mut observer)?
+                    let met = Met::Obstacle(near.other);
+                    self.cast((index, met), near, &motion, (obstacle, at), options, &mut observer)?
+                } else if let Some(instance) = scene.instance(near.other) {
+                    let (mut first, mut refused) = (None, Ok(()));
+                    let part = options.with_max_time(near.to - near.from);
+                    let way = observer.is_none().then_some((&motion, &part));
+                    let shape = &self.bodies[self.skeleton.views[near.view].link][near.body];
+                    instance.each_on_way(shape, way, &mut |member, _, placed, around| {
+                        let met = Met::Member { obstacle: near.other, member };
+                        let against = (placed, Some(around.center()));
+                        match self.cast((index, met), near, &motion, against, options, &mut observer) {
+                            Ok(next) => first = first_of(first, next),
+                            Err(why) => {
+                                refused = Err(why);
+                                return ControlFlow::Break(());
+                            }
+                        }
+                        ControlFlow::Continue(part.max_time)
+                    });
+                    refused.map(|()| first)?
                 } else {
                     None
                 };
@@ -223,17 +245,16 @@ impl<S: SupportMap> Linkage<S> {
     /// Casts a body of a link against a body that may come near it on an edge; `None` for a miss.
     fn cast<O: SupportMap<Vector = S::Vector>, E: JointTrajectory<Scalar = ScalarOf<S>> + Copy>(
         &self,
-        edge: usize,
+        (edge, met): (usize, Met),
         near: &Near<ScalarOf<S>>,
         motion: &LinkMotion<'_, S::Vector, E>,
         (against, at): (&Body<O>, Option<S::Vector>),
         options: MotionCastOptions<S::Vector>,
         observer: &mut Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<Option<PathContact<S::Vector>>, RayCastError> {
-        let &Near { from, to, view, body, other } = near;
+        let &Near { from, to, view, body, .. } = near;
         let LinkView { link, base, .. } = self.skeleton.views[view];
         let shape = &self.bodies[link][body];
-        let met = base.map_or(Met::Obstacle(other), |link| Met::Link { link, body: other });
         // The first guess of the normal leads from the middle of the other body's box to that of this body.
         let center = motion.at(Scalar::ZERO).1.of(self.skeleton.links[link].each[body].center);
         let axis = at.map(|at| center - at);

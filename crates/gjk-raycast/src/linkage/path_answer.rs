@@ -41,6 +41,13 @@ pub struct PathContact<V: Vector> {
 pub enum Met {
     /// A body of the scene, by its index.
     Obstacle(usize),
+    /// A member of an instance in the scene.
+    Member {
+        /// The index of the instance.
+        obstacle: usize,
+        /// The number of its member.
+        member: usize,
+    },
     /// A body of another link.
     Link {
         /// The index of the link.

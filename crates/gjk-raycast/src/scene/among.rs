@@ -2,9 +2,12 @@
 
 use core::ops::ControlFlow;
 
-use convex_support::{Bound, Scalar, ScalarOf, SupportMap};
+use convex_support::{Scalar, ScalarOf, SupportMap};
 
-use super::{Body, PairContact, Scene, SceneDistance, SceneRayCast, Work};
+use super::bounds::Question;
+use super::instance::{Asked, Id};
+use super::pairs::OfPair;
+use super::{Body, PairContact, Scene, SceneDistance, SceneRayCast, Slot, Work};
 use crate::{Contact, DistanceOptions, HalfSpace, Ray, RayCastError, RayCastOptions};
 
 /// The bodies of a scene that a question is about: all of them, or those that a closure picks, made by [`Scene::all`]
@@ -125,70 +128,61 @@ impl<'s, S: SupportMap> Among<'s, S> {
     }
 
     /// The last contact of these bodies.
-    pub(super) fn last_of(&self, [a, b]: [usize; 2]) -> Option<&'s Contact<S::Vector>> {
-        let found = self.last.binary_search_by_key(&(a, b), |found| (found.a, found.b)).ok()?;
+    pub(super) fn last_of(&self, pair: [Id; 2]) -> Option<&'s Contact<S::Vector>> {
+        let found = self.last.binary_search_by_key(&pair, OfPair::ids).ok()?;
         Some(&self.last[found].contact)
     }
 
-    /// The body with this index, if the question is about it.
+    /// What is at this index, if the question is about it.
     #[inline]
-    pub(super) fn body(&self, index: usize) -> Option<&'s Body<S>> {
+    pub(super) fn slot(&self, index: usize) -> Option<&'s Slot<S>> {
         if self.bodies.is_some_and(|picks| !picks(index)) {
             return None;
         }
-        self.scene.get(index)
+        self.scene.slot(index)
     }
 
     /// The half-spaces that the question is about, with their indices.
     pub(crate) fn half_spaces(&self) -> impl Iterator<Item = (usize, &'s HalfSpace<S::Vector>)> {
         let among = *self;
-        among.scene.half_spaces.iter().filter_map(move |&index| match among.body(index)? {
+        among.scene.half_spaces.iter().filter_map(move |&index| match among.slot(index)?.body()? {
             Body::HalfSpace(half_space) => Some((index, half_space)),
             Body::Convex(_) => None,
         })
     }
 
-    /// The body with this index, if it is to be tested now, which counts as work; a break if the question ends early.
-    #[inline]
-    pub(super) fn asked(&self, index: usize, work: &mut Work) -> ControlFlow<(), Option<&'s Body<S>>> {
-        let Some(body) = self.body(index) else { return ControlFlow::Continue(None) };
-        if self.stops(work) {
-            return ControlFlow::Break(());
-        }
-        work.tested += 1;
-        ControlFlow::Continue(Some(body))
-    }
-
     /// Tests the half-spaces, and then the bodies whose bound may be below the limit, mostly in the order of their
-    /// bounds. `ask` takes the bound and returns the next limit, with an index: a body at the limit counts if its index
-    /// is lower, because the lowest index counts among equals. A break or an error ends the search.
-    pub(super) fn in_order<B: Bound<S::Vector>, E>(
+    /// bounds. `ask` takes the bound and returns the next limit, with the name of a body: a body at the limit counts if
+    /// it comes before that one, because the lowest index counts among equals. A break or an error ends the search.
+    pub(super) fn in_order<Q: Question<S::Vector>, E>(
         &self,
-        bound: &B,
+        question: &Q,
         end: ScalarOf<S>,
-        mut ask: impl FnMut(usize, ScalarOf<S>, &Body<S>) -> Result<ControlFlow<(), (ScalarOf<S>, usize)>, E>,
+        ask: impl FnMut(Id, ScalarOf<S>, Asked<'_, '_, S>) -> Result<ControlFlow<(), (ScalarOf<S>, Id)>, E>,
     ) -> Result<Work, E> {
-        let (mut work, mut limit, mut refused) = (Work::default(), (end, usize::MAX), None);
+        let mut order = InOrder { among: self, work: Work::default(), limit: (end, Id::LAST), ask, refused: None };
+        let mut nodes = 0;
         let mut look = |index: usize, from: ScalarOf<S>| {
-            if (from < limit.0 || index < limit.1)
-                && let Some(body) = self.asked(index, &mut work)?
-            {
-                match ask(index, from, body) {
-                    Ok(next) => limit = next?,
-                    Err(why) => {
-                        refused = Some(why);
-                        return ControlFlow::Break(());
-                    }
-                }
+            if !order.may_count(Id::of(index), from) {
+                return ControlFlow::Continue(order.limit.0);
             }
-            ControlFlow::Continue(limit.0)
+            let (limit, Some(slot)) = (order.limit.0, self.slot(index)) else {
+                return ControlFlow::Continue(order.limit.0);
+            };
+            slot.each_member((index, from), question, limit, &mut nodes, &mut |id, from, asked| {
+                if order.may_count(id, from) {
+                    order.test(id, from, asked)
+                } else {
+                    ControlFlow::Continue(order.limit.0)
+                }
+            })
         };
         let ended = self.scene.half_spaces.iter().try_fold(end, |_, &index| look(index, Scalar::ZERO));
-        if let ControlFlow::Continue(end) = ended {
-            work.nodes = self.scene.tree.search(bound, end, look);
-        }
-        self.finish(&mut work);
-        refused.map_or(Ok(work), Err)
+        let of_tree =
+            if let ControlFlow::Continue(end) = ended { self.scene.tree.search(question, end, look) } else { 0 };
+        order.work.nodes = of_tree + nodes;
+        self.finish(&mut order.work);
+        order.refused.map_or(Ok(order.work), Err)
     }
 
     #[inline]
@@ -205,6 +199,42 @@ impl<'s, S: SupportMap> Among<'s, S> {
 
     /// The work, with the number of bodies that were left out.
     pub(super) fn finish(&self, work: &mut Work) {
-        work.culled = self.scene.len() - work.tested;
+        work.culled = self.scene.members - work.tested;
+    }
+}
+
+/// A running search for bodies in the order of their bounds.
+struct InOrder<'a, 's, S: SupportMap, F, E> {
+    among: &'a Among<'s, S>,
+    work: Work,
+    limit: (ScalarOf<S>, Id),
+    ask: F,
+    refused: Option<E>,
+}
+
+impl<S: SupportMap, F, E> InOrder<'_, '_, S, F, E>
+where
+    F: FnMut(Id, ScalarOf<S>, Asked<'_, '_, S>) -> Result<ControlFlow<(), (ScalarOf<S>, Id)>, E>,
+{
+    /// Whether a body with this bound may come before the limit.
+    #[inline(always)]
+    fn may_count(&self, id: Id, from: ScalarOf<S>) -> bool {
+        from < self.limit.0 || id < self.limit.1
+    }
+
+    #[inline(always)]
+    fn test(&mut self, id: Id, from: ScalarOf<S>, asked: Asked<'_, '_, S>) -> ControlFlow<(), ScalarOf<S>> {
+        if self.among.stops(&mut self.work) {
+            return ControlFlow::Break(());
+        }
+        self.work.tested += 1;
+        match (self.ask)(id, from, asked) {
+            Ok(next) => self.limit = next?,
+            Err(why) => {
+                self.refused = Some(why);
+                return ControlFlow::Break(());
+            }
+        }
+        ControlFlow::Continue(self.limit.0)
     }
 }

@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use convex_support::{Scalar, Vector};
 
+use super::instance::Id;
 use crate::{Cast, Contact, Distance, Impact, RayHit, SignedDistance, Status};
 
 /// What was done for an answer, and what was left out. It may be ignored.
@@ -72,6 +73,9 @@ pub type SceneMotionCast<V> = SceneCast<Impact<V>, <V as Vector>::Scalar>;
 pub struct BodyHit<H, S: Scalar> {
     /// The index of the body.
     pub body: usize,
+    /// The number of the member that it was, if the body is an instance of a [`Group`](crate::Group).
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub member: Option<usize>,
     /// The hit.
     pub hit: H,
     /// The lower end of its bracket.
@@ -84,9 +88,9 @@ pub struct BodyHit<H, S: Scalar> {
 }
 
 impl<H: Copy, S: Scalar> BodyHit<H, S> {
-    pub(super) fn of<V: Vector<Scalar = S>>(body: usize, cast: &Cast<H, V>) -> Option<Self> {
+    pub(super) fn of<V: Vector<Scalar = S>>(Id { body, member }: Id, cast: &Cast<H, V>) -> Option<Self> {
         let &Cast { lower, upper, status, .. } = cast;
-        cast.outcome.hit().map(|hit| Self { body, hit, lower, upper, status })
+        cast.outcome.hit().map(|hit| Self { body, member, hit, lower, upper, status })
     }
 }
 
@@ -153,6 +157,9 @@ pub struct SceneDistance<V: Vector> {
 pub struct BodyDistance<V: Vector> {
     /// The index of the body.
     pub body: usize,
+    /// The number of the member that it was, if the body is an instance of a [`Group`](crate::Group).
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub member: Option<usize>,
     /// The distance from the shape, `a`, to the body, `b`.
     pub distance: Distance<V>,
 }
@@ -179,6 +186,9 @@ pub struct SceneSignedDistance<V: Vector> {
 pub struct BodySignedDistance<V: Vector> {
     /// The index of the body.
     pub body: usize,
+    /// The number of the member that it was, if the body is an instance of a [`Group`](crate::Group).
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub member: Option<usize>,
     /// The signed distance of the shape, `a`, and the body, `b`.
     pub distance: SignedDistance<V>,
 }
@@ -192,8 +202,20 @@ pub struct PairDistance<V: Vector> {
     pub a: usize,
     /// The index of the second.
     pub b: usize,
+    /// The number of the member that the first was, if it is an instance of a [`Group`](crate::Group).
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub member_a: Option<usize>,
+    /// The same for the second.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub member_b: Option<usize>,
     /// The distance from the first to the second.
     pub distance: Distance<V>,
+}
+
+impl<V: Vector> PairDistance<V> {
+    pub(super) fn of([a, b]: [Id; 2], distance: Distance<V>) -> Self {
+        Self { a: a.body, b: b.body, member_a: a.member, member_b: b.member, distance }
+    }
 }
 
 /// The answer of [`Among::nearest_between`](crate::Among::nearest_between) and
@@ -242,8 +264,17 @@ impl<I> SceneAnyWithin<I> {
 pub struct BodyContact<V: Vector> {
     /// The index of the body.
     pub body: usize,
+    /// The number of the member that it was, if the body is an instance of a [`Group`](crate::Group).
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub member: Option<usize>,
     /// The contact of the shape, `a`, with the body, `b`.
     pub contact: Contact<V>,
+}
+
+impl<V: Vector> BodyContact<V> {
+    pub(super) fn id(&self) -> Id {
+        Id { body: self.body, member: self.member }
+    }
 }
 
 /// Two bodies, and their contact.
@@ -255,6 +286,12 @@ pub struct PairContact<V: Vector> {
     pub a: usize,
     /// The index of the second.
     pub b: usize,
+    /// The number of the member that the first was, if it is an instance of a [`Group`](crate::Group).
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub member_a: Option<usize>,
+    /// The same for the second.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub member_b: Option<usize>,
     /// The contact of the first with the second.
     pub contact: Contact<V>,
 }

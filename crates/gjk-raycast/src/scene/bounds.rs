@@ -1,14 +1,94 @@
-//! What a tree of boxes is searched by: the times when a moving shape meets them, and their heights above a half-space.
+//! What a tree of boxes is searched by: the times when a moving shape meets them, and their heights above a half-space;
+//! and how an instance sees that.
 
 use convex_support::glam::Vec4;
 use convex_support::{
-    Aabb, Bound, BoundingSphere, Boxes, CoarseBound, CoarseSweptBox, CoarseUnit, Frame, Scalar, SupportMap, SweptBox,
-    Vector,
+    Aabb, Bound, BoundingSphere, BoxDistance, Boxes, CoarseBound, CoarseSweptBox, CoarseUnit, Frame, Scalar,
+    SupportMap, SweptBox, Vector,
 };
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
+use super::instance::InstanceFrame;
 use crate::{HalfSpace, MotionCastOptions, MovingBall, Trajectory};
+
+/// A question to a scene, whose bound can be taken into the frame of an instance. There it is at most the bound of each
+/// member's box in the world, with the rounding of the pose counted.
+pub(crate) trait Question<V: Vector>: Bound<V> + Sized {
+    /// The question as the instance sees it.
+    fn seen_from(&self, frame: &InstanceFrame<V>) -> Self;
+}
+
+impl<V: Vector> Question<V> for BoxDistance<V> {
+    fn seen_from(&self, frame: &InstanceFrame<V>) -> Self {
+        let around = self.of();
+        let (center, half) = (around.center(), around.half_extents());
+        let half = frame.half_extents(half) + V::splat(frame.room(center.abs() + half));
+        let center = frame.point(center);
+        let (min, max) = (center - half, center + half);
+        Self::new(if min.is_finite() && max.is_finite() { Aabb { min, max } } else { Aabb::everything() })
+    }
+}
+
+/// A box that moves straight, such as a point along a ray.
+#[derive(Clone, Copy)]
+pub(super) struct MovesStraight<V> {
+    pub(super) half: V,
+    pub(super) source: V,
+    pub(super) direction: V,
+}
+
+/// A few of them, with a bound of all.
+#[derive(Clone, Copy)]
+pub(super) struct Moving<V: Vector, const N: usize = 1> {
+    each: [MovesStraight<V>; N],
+    swept: SweptBox<V>,
+}
+
+impl<V: Vector> Moving<V> {
+    pub(super) fn new(half: V, source: V, direction: V) -> Self {
+        Self { each: [MovesStraight { half, source, direction }], swept: SweptBox::new(half, source, direction) }
+    }
+}
+
+impl<V: Vector, const N: usize> Moving<V, N> {
+    /// `None` if they are too far from one another for one [bound](SweptBox::and).
+    pub(super) fn all(each: [Moving<V>; N]) -> Option<Self> {
+        let swept = each[1..].iter().try_fold(each[0].swept, |all, one| all.and(&one.swept))?;
+        Some(Self { each: each.map(|one| one.each[0]), swept })
+    }
+}
+
+impl<V: Vector, const N: usize> Bound<V> for Moving<V, N> {
+    type Coarse = CoarseSweptBox<V>;
+
+    #[inline(always)]
+    fn bound(&self, around: &Aabb<V>) -> V::Scalar {
+        self.swept.bound(around)
+    }
+
+    #[inline]
+    fn coarse(&self, frame: &Frame<V>) -> CoarseSweptBox<V> {
+        self.swept.coarse(frame)
+    }
+}
+
+impl<V: Vector, const N: usize> Question<V> for Moving<V, N> {
+    /// The rounding of the direction moves the box by a few ε of the way to the instance, which is no longer than the
+    /// source and the instance are far away.
+    fn seen_from(&self, frame: &InstanceFrame<V>) -> Self {
+        let seen = self.each.map(|MovesStraight { half, source, direction }| {
+            let room = frame.room(source.abs() + half);
+            let half = frame.half_extents(half) + V::splat(room);
+            Moving::new(half, frame.point(source), frame.vector(direction))
+        });
+        // Boxes that are too far from one another here are everywhere from the start, which bounds nothing.
+        Self::all(seen).unwrap_or_else(|| {
+            let everywhere = SweptBox::new(V::splat(V::Scalar::max_value()), V::ZERO, V::ONE);
+            Self { each: seen.map(|one| one.each[0]), swept: everywhere }
+        })
+    }
+}
 
 const MAX_PARTS: usize = 16;
 
@@ -57,6 +137,7 @@ impl<V: Vector> MovingBalls<V> {
 struct MovingBox<V: Vector> {
     start: V::Scalar,
     duration: V::Scalar,
+    ball: MovingBall<V>,
     swept: SweptBox<V>,
 }
 
@@ -74,7 +155,18 @@ impl<V: Vector> MovingBox<V> {
         let reach = if reach.is_finite() { reach } else { within };
         let room = number(64.0) * V::Scalar::EPSILON * reach.max_element();
         let swept = SweptBox::new(V::splat(ball.radius + room), ball.start, ball.velocity);
-        Self { start, duration: duration * (V::Scalar::ONE + number(8.0) * V::Scalar::EPSILON), swept }
+        Self { start, duration: duration * (V::Scalar::ONE + number(8.0) * V::Scalar::EPSILON), ball, swept }
+    }
+}
+
+impl<V: Vector> Question<V> for MovingBalls<V> {
+    fn seen_from(&self, frame: &InstanceFrame<V>) -> Self {
+        let seen = |&MovingBox { start, duration, ball, .. }: &MovingBox<V>| {
+            let radius = ball.radius + frame.room(ball.start.abs() + V::splat(ball.radius));
+            let (at, velocity) = (frame.point(ball.start), frame.vector(ball.velocity));
+            MovingBox::new(start, duration, MovingBall { start: at, velocity, radius })
+        };
+        Self(self.0.iter().map(seen).collect())
     }
 }
 
@@ -137,6 +229,7 @@ impl<V: Vector> CoarseBound for CoarseMovingBalls<V> {
 }
 
 /// A lower bound on the distance of a box from a half-space: that of its lowest corner.
+#[derive(Clone, Copy)]
 pub(super) struct HeightBound<V: Vector> {
     normal: V,
     /// The offset with room for its rounding.
@@ -182,6 +275,14 @@ impl<V: Vector> Bound<V> for HeightBound<V> {
         }
         coarse.rest = CoarseUnit::down((rest - 16.0 * epsilon * terms) * unit.per_unit());
         coarse
+    }
+}
+
+impl<V: Vector> Question<V> for HeightBound<V> {
+    fn seen_from(&self, frame: &InstanceFrame<V>) -> Self {
+        let offset = frame.offset(self.normal, self.offset);
+        let room = frame.room(V::axis(0) * self.offset.abs());
+        Self { normal: frame.vector(self.normal), offset: offset + room }
     }
 }
 

@@ -8,6 +8,8 @@ use num_traits::Float as _;
 
 use super::among::Among;
 use super::answers::{BodyContact, PairContact, Work, reuse};
+use super::instance::{Id, asked, asked_pair};
+use super::pairs::OfPair;
 use super::{Body, Scene};
 use crate::contact::contact_of;
 use crate::{Contact, SignedDistanceOptions, signed_distance};
@@ -39,10 +41,11 @@ impl<S: SupportMap> Among<'_, S> {
         options: SignedDistanceOptions<S::Vector>,
         contacts: &mut Vec<BodyContact<S::Vector>>,
     ) -> Work {
-        let work = self.near(shape, of_boxes::<S>(within), reuse(contacts), |index, body| {
-            Some(BodyContact { body: index, contact: body.contact(shape, within, options)? })
+        let work = self.near(shape, of_boxes::<S>(within), reuse(contacts), |Id { body: index, member }, body| {
+            let contact = asked!(body, body => body.contact(shape, within, options))?;
+            Some(BodyContact { body: index, member, contact })
         });
-        contacts.sort_unstable_by_key(|found| found.body);
+        contacts.sort_unstable_by_key(|found| (found.body, found.member));
         work
     }
 
@@ -72,9 +75,11 @@ impl<S: SupportMap> Among<'_, S> {
         options: SignedDistanceOptions<S::Vector>,
         contacts: &mut Vec<PairContact<S::Vector>>,
     ) -> Work {
-        self.find_pairs(of_boxes::<S>(within), contacts, &|pair, a, b| {
-            between(pair, a, b, within, options, self.last_of(pair))
-        })
+        self.find_pairs(
+            of_boxes::<S>(within),
+            contacts,
+            &|pair, a, b| asked_pair!(a, b => between(pair, a, b, within, options, self.last_of(pair))),
+        )
     }
 
     /// Finds the contacts of all pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than
@@ -86,9 +91,12 @@ impl<S: SupportMap> Among<'_, S> {
         options: SignedDistanceOptions<S::Vector>,
         contacts: &mut Vec<PairContact<S::Vector>>,
     ) -> Work {
-        self.find_pairs_between(other, of_boxes::<S>(within), contacts, &|pair, a, b| {
-            between(pair, a, b, within, options, self.last_of(pair))
-        })
+        self.find_pairs_between(
+            other,
+            of_boxes::<S>(within),
+            contacts,
+            &|pair, a, b| asked_pair!(a, b => between(pair, a, b, within, options, self.last_of(pair))),
+        )
     }
 
     /// [`contacts_within`](Self::contacts_within) on all threads of the current [rayon](https://docs.rs/rayon) pool,
@@ -104,9 +112,11 @@ impl<S: SupportMap> Among<'_, S> {
     where
         S: Sync,
     {
-        self.par_find_pairs(of_boxes::<S>(within), contacts, &|pair, a, b| {
-            between(pair, a, b, within, options, self.last_of(pair))
-        })
+        self.par_find_pairs(
+            of_boxes::<S>(within),
+            contacts,
+            &|pair, a, b| asked_pair!(a, b => between(pair, a, b, within, options, self.last_of(pair))),
+        )
     }
 }
 
@@ -117,7 +127,7 @@ fn of_boxes<S: SupportMap>(within: ScalarOf<S>) -> ScalarOf<S> {
 
 /// The contact of two bodies, if they are no farther than `within` from each other.
 fn between<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
-    [i, j]: [usize; 2],
+    [id_a, id_b]: [Id; 2],
     a: &Body<S>,
     b: &Body<T>,
     within: ScalarOf<S>,
@@ -132,7 +142,8 @@ fn between<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
         }
         (Body::HalfSpace(_), Body::HalfSpace(_)) => None,
     };
-    Some(PairContact { a: i, b: j, contact: contact? })
+    let (Id { body: a, member: member_a }, Id { body: b, member: member_b }) = (id_a, id_b);
+    Some(PairContact { a, b, member_a, member_b, contact: contact? })
 }
 
 impl<S: SupportMap> Scene<S> {
@@ -162,9 +173,9 @@ impl<S: SupportMap> Scene<S> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn leave_out_seams(&self, contacts: &mut Vec<BodyContact<S::Vector>>) -> usize {
-        leave_out(contacts, |contacts, &BodyContact { body, contact }| {
-            let others = || contacts.iter().map(|found| found.body).filter(|&other| other != body);
-            self.is_at_seam(&contact, others)
+        leave_out(contacts, |contacts, found| {
+            let others = || contacts.iter().map(BodyContact::id).filter(|&other| other != found.id());
+            self.is_at_seam(&found.contact, others)
         })
     }
 
@@ -172,9 +183,10 @@ impl<S: SupportMap> Scene<S> {
     /// pieces. A contact is removed if all of its points are at seams of one of its bodies with others that touch the
     /// other one.
     pub fn leave_out_seams_of_pairs(&self, contacts: &mut Vec<PairContact<S::Vector>>) -> usize {
-        leave_out(contacts, |contacts, &PairContact { a, b, contact }| {
+        leave_out(contacts, |contacts, pair| {
+            let ([a, b], contact) = (pair.ids(), pair.contact);
             [(a, b, contact), (b, a, contact.reversed())].into_iter().any(|(moving, piece, contact)| {
-                let touching = |found: &PairContact<_>| match [found.a, found.b] {
+                let touching = |found: &PairContact<_>| match found.ids() {
                     [other, it] | [it, other] if it == moving && other != piece => Some(other),
                     _ => None,
                 };
@@ -190,30 +202,37 @@ impl<S: SupportMap> Scene<S> {
         other: &Scene<T>,
         contacts: &mut Vec<PairContact<S::Vector>>,
     ) -> usize {
-        leave_out(contacts, |contacts, &PairContact { a, b, contact }| {
-            let beside_a = || contacts.iter().filter(|found| found.b == b && found.a != a).map(|found| found.a);
-            let beside_b = || contacts.iter().filter(|found| found.a == a && found.b != b).map(|found| found.b);
+        leave_out(contacts, |contacts, pair| {
+            let ([a, b], contact) = (pair.ids(), pair.contact);
+            let all = || contacts.iter().map(OfPair::ids);
+            let beside_a = || all().filter(|found| found[1] == b && found[0] != a).map(|found| found[0]);
+            let beside_b = || all().filter(|found| found[0] == a && found[1] != b).map(|found| found[1]);
             other.is_at_seam(&contact, beside_b) || self.is_at_seam(&contact.reversed(), beside_a)
         })
     }
 
     /// Whether one of the others covers each point of a contact on its second body.
-    fn is_at_seam<I: Iterator<Item = usize>>(&self, contact: &Contact<S::Vector>, others: impl Fn() -> I) -> bool {
+    fn is_at_seam<I: Iterator<Item = Id>>(&self, contact: &Contact<S::Vector>, others: impl Fn() -> I) -> bool {
         let covers = |point, other| self.reaches_beyond(other, point, contact.normal);
         contact.points().iter().all(|point| others().any(|other| covers(point.point_b, other)))
     }
 
     /// Whether a point is one of a convex body, to the root of rounding, and the body extends beyond it along a unit
     /// vector.
-    fn reaches_beyond(&self, body: usize, point: S::Vector, normal: S::Vector) -> bool {
-        let Some(body) = self.get(body).and_then(|body| body.convex()) else { return false };
-        let core = body.core();
-        let rounding = core.size() * ScalarOf::<S>::EPSILON.sqrt();
-        let Ok(at) = Point::new(point) else { return false };
-        normal.dot(body.support(normal) - point) > rounding
-            && signed_distance(&at, body, SignedDistanceOptions::default().with_limit(rounding)).signed_distance
-                <= rounding
+    fn reaches_beyond(&self, Id { body, member }: Id, point: S::Vector, normal: S::Vector) -> bool {
+        match member {
+            None => self.get(body).and_then(Body::convex).is_some_and(|body| reaches_beyond(body, point, normal)),
+            Some(member) => self.member(body, member).is_some_and(|body| reaches_beyond(&body, point, normal)),
+        }
     }
+}
+
+fn reaches_beyond<S: SupportMap>(body: &S, point: S::Vector, normal: S::Vector) -> bool {
+    let core = body.core();
+    let rounding = core.size() * ScalarOf::<S>::EPSILON.sqrt();
+    let Ok(at) = Point::new(point) else { return false };
+    normal.dot(body.support(normal) - point) > rounding
+        && signed_distance(&at, body, SignedDistanceOptions::default().with_limit(rounding)).signed_distance <= rounding
 }
 
 /// Removes contacts one by one, each tested against the remaining ones, and returns their number.

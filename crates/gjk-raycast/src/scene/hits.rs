@@ -3,16 +3,17 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use convex_support::{Aabb, Bound, Scalar, ScalarOf, SupportMap, SweptBox, Vector, outer_box};
+use convex_support::{Aabb, Bound, Scalar, ScalarOf, SupportMap, Vector, outer_box};
 use num_traits::Float;
 
+use super::Work;
 use super::among::Among;
 use super::answers::{
     BodyHit, SceneAnyHit, SceneCast, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, reuse,
 };
 use super::body::seen_from;
-use super::bounds::MovingBalls;
-use super::{Body, Work};
+use super::bounds::{Moving, MovingBalls, Question};
+use super::instance::{Asked, Id, asked};
 use crate::motion::{check, checked};
 use crate::{
     Cast, ChainMotion, Impact, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastError, RayCastOptions, RayHit,
@@ -30,7 +31,8 @@ impl<S: SupportMap> Among<'_, S> {
         options: RayCastOptions<S::Vector>,
     ) -> Result<SceneRayCast<S::Vector>, RayCastError> {
         ray.check(&options)?;
-        self.first(&swept_point(ray), options.max_lambda, |body| body.ray_cast(ray, options), |hit| hit.lambda)
+        let ask = |body: Asked<'_, '_, S>| asked!(body, body => body.ray_cast(ray, options));
+        self.first(&swept_point(ray), options.max_lambda, ask, |hit| hit.lambda)
     }
 
     /// [`ray_cast`](Self::ray_cast) for each of many rays, written into a slice. Nothing is allocated.
@@ -88,7 +90,7 @@ impl<S: SupportMap> Among<'_, S> {
         hits: &mut Vec<BodyHit<RayHit<S::Vector>, ScalarOf<S>>>,
     ) -> Result<SceneHits, RayCastError> {
         ray.check(&options)?;
-        let ask = |body: &Body<S>| body.ray_cast(ray, options);
+        let ask = |body: Asked<'_, '_, S>| asked!(body, body => body.ray_cast(ray, options));
         self.all_hits(&swept_point(ray), options.max_lambda, hits, ask, |hit| hit.lambda)
     }
 
@@ -124,9 +126,9 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<SceneAnyHit, RayCastError> {
         ray.check(&options)?;
         let (mut hit, mut is_certain, mut undecided) = (false, false, None::<usize>);
-        let all = (options.max_lambda, usize::MAX);
-        let work = self.in_order(&swept_point(ray), options.max_lambda, |index, _, body| {
-            let cast = body.ray_cast(ray, options)?;
+        let all = (options.max_lambda, Id::LAST);
+        let work = self.in_order(&swept_point(ray), options.max_lambda, |Id { body: index, .. }, _, body| {
+            let cast = asked!(body, body => body.ray_cast(ray, options))?;
             hit |= cast.outcome.is_hit();
             is_certain = cast.outcome.is_hit() && cast.is_certain();
             if !cast.is_certain() {
@@ -151,7 +153,8 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<SceneLinearCast<S::Vector>, RayCastError> {
         motion.check(&options)?;
         let swept = swept_shape(shape, motion, &options);
-        self.first(&swept, options.max_time, |body| body.linear_cast(shape, motion, options), |hit| hit.time)
+        let ask = |body: Asked<'_, '_, S>| asked!(body, body => body.linear_cast(shape, motion, options));
+        self.first(&swept, options.max_time, ask, |hit| hit.time)
     }
 
     /// Finds all bodies that the moving shape meets: the hits of [`linear_cast`](crate::linear_cast) against each body,
@@ -183,7 +186,7 @@ impl<S: SupportMap> Among<'_, S> {
         hits: &mut Vec<BodyHit<Impact<S::Vector>, ScalarOf<S>>>,
     ) -> Result<SceneHits, RayCastError> {
         motion.check(&options)?;
-        let ask = |body: &Body<S>| body.linear_cast(shape, motion, options);
+        let ask = |body: Asked<'_, '_, S>| asked!(body, body => body.linear_cast(shape, motion, options));
         self.all_hits(&swept_shape(shape, motion, &options), options.max_time, hits, ask, |hit| hit.time)
     }
 
@@ -219,7 +222,8 @@ impl<S: SupportMap> Among<'_, S> {
         check("motion", &motion)?;
         let options = checked(options)?;
         let balls = MovingBalls::new(shape, &motion, &options);
-        self.first(&balls, options.max_time, |body| body.motion_cast(shape, &motion, options, |_| {}), |hit| hit.time)
+        let ask = |body: Asked<'_, '_, S>| asked!(body, body => body.motion_cast(shape, &motion, options, |_| {}));
+        self.first(&balls, options.max_time, ask, |hit| hit.time)
     }
 
     /// The first body that a shape meets as both move. All bodies share one rigid motion, such as loads on a vehicle or
@@ -258,48 +262,49 @@ impl<S: SupportMap> Among<'_, S> {
         let options = checked(options)?;
         let seen = seen_from(of_bodies, motion);
         let balls = MovingBalls::new(shape, &ChainMotion::new(&seen), &options);
-        let ask = |body: &Body<S>| body.motion_cast_of_both(shape, motion, of_bodies, options);
+        let ask =
+            |body: Asked<'_, '_, S>| asked!(body, body => body.motion_cast_of_both(shape, motion, of_bodies, options));
         self.first(&balls, options.max_time, ask, |hit| hit.time)
     }
 
     /// All hits of bodies that `bound` does not leave out, in the order of their λ or time and then of their indices.
-    fn all_hits<H: Copy, B: Bound<S::Vector>>(
+    fn all_hits<H: Copy, Q: Question<S::Vector>>(
         &self,
-        bound: &B,
+        bound: &Q,
         end: ScalarOf<S>,
         hits: &mut Vec<BodyHit<H, ScalarOf<S>>>,
-        ask: impl Fn(&Body<S>) -> Result<Cast<H, S::Vector>, RayCastError>,
+        ask: impl Fn(Asked<'_, '_, S>) -> Result<Cast<H, S::Vector>, RayCastError>,
         value: impl Fn(&H) -> ScalarOf<S>,
     ) -> Result<SceneHits, RayCastError> {
         let hits = reuse(hits);
         let mut undecided = None::<usize>;
-        let work = self.in_order(bound, end, |index, _, body| {
+        let work = self.in_order(bound, end, |id, _, body| {
             let cast = ask(body)?;
             if cast.outcome.is_undecided() {
-                undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
+                undecided = Some(undecided.map_or(id.body, |lowest: usize| lowest.min(id.body)));
             }
-            hits.extend(BodyHit::of(index, &cast));
-            Ok(ControlFlow::Continue((end, usize::MAX)))
+            hits.extend(BodyHit::of(id, &cast));
+            Ok(ControlFlow::Continue((end, Id::LAST)))
         })?;
         hits.sort_unstable_by(|p, q| {
             let (a, b) = (value(&p.hit), value(&q.hit));
-            a.partial_cmp(&b).unwrap_or(core::cmp::Ordering::Equal).then(p.body.cmp(&q.body))
+            a.partial_cmp(&b).unwrap_or(core::cmp::Ordering::Equal).then((p.body, p.member).cmp(&(q.body, q.member)))
         });
         Ok(SceneHits { undecided, work })
     }
 
     /// The first hit of all bodies that `bound` does not leave out; `ask` makes the single cast, and `value` is the λ
     /// or the time of a hit.
-    fn first<H: Copy, B: Bound<S::Vector>>(
+    fn first<H: Copy, Q: Question<S::Vector>>(
         &self,
-        bound: &B,
+        bound: &Q,
         end: ScalarOf<S>,
-        ask: impl Fn(&Body<S>) -> Result<Cast<H, S::Vector>, RayCastError>,
+        ask: impl Fn(Asked<'_, '_, S>) -> Result<Cast<H, S::Vector>, RayCastError>,
         value: impl Fn(&H) -> ScalarOf<S>,
     ) -> Result<SceneCast<H, ScalarOf<S>>, RayCastError> {
         let mut found = First::default();
-        let work = self.in_order(bound, end, |index, from, body| {
-            found.add(index, from, &ask(body)?, &value);
+        let work = self.in_order(bound, end, |id, from, body| {
+            found.add(id, from, &ask(body)?, &value);
             Ok(ControlFlow::Continue(found.limit(end)))
         })?;
         Ok(found.answer(work))
@@ -315,24 +320,27 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<bool, RayCastError> {
         let end = options.max_lambda;
         let swept: [_; BUNDLE] = core::array::from_fn(|k| swept_point(rays[k.min(rays.len() - 1)]));
-        let Some(around) = swept[1..].iter().try_fold(swept[0], |all, one| all.and(one)) else { return Ok(false) };
+        let Some(around) = Moving::all(swept) else { return Ok(false) };
         let (mut found, mut tested, mut visited) = ([First::default(); BUNDLE], [0; BUNDLE], 0);
-        let work = self.in_order(&around, end, |index, _, body| {
-            let around = self.scene.tree.get(index);
+        let work = self.in_order(&around, end, |id, _, body| {
+            let around = match body {
+                Asked::Own(_) => self.scene.tree.get(id.body),
+                Asked::Member(_, around) => Some(around),
+            };
             visited += usize::from(around.is_some());
             if visited > MOST_VISITED {
                 return Ok(ControlFlow::Break(()));
             }
             for (k, &ray) in rays.iter().enumerate() {
                 let from = around.map_or(Scalar::ZERO, |around| swept[k].bound(&around));
-                if from < ScalarOf::<S>::infinity() && (from, index) < found[k].limit(end) {
-                    found[k].add(index, from, &body.ray_cast(ray, options)?, |hit| hit.lambda);
+                if from < ScalarOf::<S>::infinity() && (from, id) < found[k].limit(end) {
+                    found[k].add(id, from, &asked!(body, body => body.ray_cast(ray, options))?, |hit| hit.lambda);
                     tested[k] += 1;
                 }
             }
             let limits = found[..rays.len()].iter().map(|found| found.limit(end).0);
             let last = limits.fold(ScalarOf::<S>::neg_infinity(), Float::max);
-            Ok(ControlFlow::Continue((last, usize::MAX)))
+            Ok(ControlFlow::Continue((last, Id::LAST)))
         })?;
         if visited > MOST_VISITED {
             return Ok(false);
@@ -360,9 +368,9 @@ const MOST_VISITED: usize = 64;
 #[derive(Clone, Copy)]
 struct First<H, S: Scalar> {
     /// The least key, with the hit.
-    first: Option<((S, usize), BodyHit<H, S>)>,
+    first: Option<((S, Id), BodyHit<H, S>)>,
     /// The earliest possible hit of an undecided body, with its index.
-    open: Option<(S, usize)>,
+    open: Option<(S, Id)>,
     lower: S,
 }
 
@@ -373,16 +381,16 @@ impl<H, S: Scalar> Default for First<H, S> {
 }
 
 impl<H: Copy, S: Scalar> First<H, S> {
-    fn add<V: Vector<Scalar = S>>(&mut self, index: usize, from: S, cast: &Cast<H, V>, value: impl Fn(&H) -> S) {
-        let start = (Float::max(cast.lower, from), index);
+    fn add<V: Vector<Scalar = S>>(&mut self, id: Id, from: S, cast: &Cast<H, V>, value: impl Fn(&H) -> S) {
+        let start = (Float::max(cast.lower, from), id);
         if !cast.outcome.is_miss() {
             self.lower = Float::min(self.lower, start.0);
         }
         if cast.outcome.is_undecided() && self.open.is_none_or(|open| start < open) {
             self.open = Some(start);
         }
-        if let Some(hit) = BodyHit::of(index, cast) {
-            let key = (Float::max(value(&hit.hit), from), index);
+        if let Some(hit) = BodyHit::of(id, cast) {
+            let key = (Float::max(value(&hit.hit), from), id);
             if self.first.is_none_or(|(least, _)| key < least) {
                 self.first = Some((key, hit));
             }
@@ -390,22 +398,22 @@ impl<H: Copy, S: Scalar> First<H, S> {
     }
 
     /// The key from which on no body counts.
-    fn limit(&self, end: S) -> (S, usize) {
-        self.first.map_or((end, usize::MAX), |(key, _)| key)
+    fn limit(&self, end: S) -> (S, Id) {
+        self.first.map_or((end, Id::LAST), |(key, _)| key)
     }
 
     fn answer(&self, work: Work) -> SceneCast<H, S> {
-        let before_first = |&open: &(S, usize)| self.first.is_none_or(|(key, _)| open < key);
-        let undecided = self.open.filter(before_first).map(|(_, body)| body);
+        let before_first = |&open: &(S, Id)| self.first.is_none_or(|(key, _)| open < key);
+        let undecided = self.open.filter(before_first).map(|(_, id)| id.body);
         let lower = if work.cancelled { S::ZERO } else { self.lower };
         SceneCast { first: self.first.map(|(_, hit)| hit), lower, undecided, work }
     }
 }
 
 /// The box of a ray, with room for the rounding of its points: 32 ε of the source.
-fn swept_point<V: Vector>(ray: Ray<V>) -> SweptBox<V> {
+fn swept_point<V: Vector>(ray: Ray<V>) -> Moving<V> {
     let room = V::Scalar::from_f64(32.0) * V::Scalar::EPSILON * ray.source.abs().dot(V::ONE);
-    SweptBox::new(V::splat(room), ray.source, ray.direction)
+    Moving::new(V::splat(room), ray.source, ray.direction)
 }
 
 /// The box of a moving shape, in the frame of the bodies, with room for the target distance. If a number of the shape
@@ -414,12 +422,12 @@ fn swept_shape<A: SupportMap + ?Sized>(
     shape: &A,
     motion: Motion<A::Vector>,
     options: &LinearCastOptions<A::Vector>,
-) -> SweptBox<A::Vector> {
+) -> Moving<A::Vector> {
     let around = outer_box(shape).unwrap_or_else(Aabb::everything);
     let room = A::Vector::splat(Float::max(options.target_distance, Scalar::ZERO));
     let around = Aabb { min: around.min - room, max: around.max + room };
     let (center, half) = (around.center(), around.half_extents());
     // Both are rounded.
     let room = (center.abs() + half) * (ScalarOf::<A>::from_f64(4.0) * ScalarOf::<A>::EPSILON);
-    SweptBox::new(half + room, center, motion.velocity_a - motion.velocity_b)
+    Moving::new(half + room, center, motion.velocity_a - motion.velocity_b)
 }

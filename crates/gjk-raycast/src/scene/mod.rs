@@ -6,17 +6,19 @@ mod body;
 mod bounds;
 mod contacts;
 mod hits;
+mod instance;
 mod nearest;
 mod nearest_pair;
 mod pairs;
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::error::Error;
 use core::fmt::{self, Display, Formatter};
 
-use convex_support::{Aabb, Bvh, SupportMap, Triangle, Vector, Vector3, outer_box};
+use convex_support::{Aabb, Bvh, InvalidShape, Posed, SupportMap, Triangle, Vector, Vector3, outer_box};
 
-use crate::HalfSpace;
+use crate::{HalfSpace, Pose};
 
 pub use self::answers::{
     BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, SceneAnyHit, SceneAnyWithin,
@@ -24,6 +26,7 @@ pub use self::answers::{
     SceneSignedDistance, Work,
 };
 pub use self::body::Body;
+pub use self::instance::{Group, Instance};
 
 /// A set of bodies with a tree of their boxes, for questions such as the first hit, the nearest body, or all near
 /// pairs.
@@ -80,18 +83,58 @@ pub use self::body::Body;
 /// swept volumes, each the `MinkowskiSum` of the body and a `Segment`, and ask for the pairs within 0.
 ///
 /// # Groups
-/// A compound is represented by several bodies that are moved together. [`among`](Self::among) restricts a question
-/// to the bodies that a closure picks, such as those of a layer, and
+/// A compound or a mesh that moves as one is a scene of its own, made a [`Group`]. A body of this scene may be an
+/// [instance](Self::insert_group) of a group, with a pose; answers say which *member* of the body it was. The group may
+/// be of another kind of shapes, so that this is also how a mesh, hulls and shapes of your own come into one scene.
+///
+/// [`among`](Self::among) restricts a question to the bodies that a closure picks, such as those of a layer, and
 /// [`Among::without_pairs`](crate::Among::without_pairs) leaves out pairs, such as those of neighbouring links.
 #[doc(alias("world", "broad_phase", "query_pipeline", "collision_world", "compound", "trimesh"))]
 #[derive(Clone, Debug)]
 pub struct Scene<S: SupportMap> {
-    bodies: Vec<Option<Body<S>>>,
+    bodies: Vec<Option<Slot<S>>>,
     tree: Bvh<S::Vector>,
+    /// The number of bodies, where each member of an instance counts as one.
+    members: usize,
     /// The indices of half-spaces, which no box contains, in their order.
     half_spaces: Vec<usize>,
     /// Indices of removed bodies, to be used again.
     free: Vec<usize>,
+}
+
+/// What is at an index.
+#[derive(Clone, Debug)]
+enum Slot<S: SupportMap> {
+    Body(Body<S>),
+    Instance(Box<Instance<S::Vector>>),
+}
+
+impl<S: SupportMap> Slot<S> {
+    fn body(&self) -> Option<&Body<S>> {
+        match self {
+            Self::Body(body) => Some(body),
+            Self::Instance(_) => None,
+        }
+    }
+
+    fn instance(&self) -> Option<&Instance<S::Vector>> {
+        match self {
+            Self::Instance(instance) => Some(instance),
+            Self::Body(_) => None,
+        }
+    }
+
+    /// The box around it, if it has one.
+    fn around(&self) -> Option<Aabb<S::Vector>> {
+        match self {
+            Self::Body(body) => body.convex().and_then(outer_box),
+            Self::Instance(instance) => Some(instance.around()),
+        }
+    }
+
+    fn members(&self) -> usize {
+        self.instance().map_or(1, |instance| instance.group().len())
+    }
 }
 
 impl<S: SupportMap> Scene<S> {
@@ -100,13 +143,14 @@ impl<S: SupportMap> Scene<S> {
     /// # Errors
     /// [`SceneError::NotFinite`] for the first body whose box is not finite.
     pub fn new(bodies: impl IntoIterator<Item = S>) -> Result<Self, SceneError> {
-        let bodies: Vec<_> = bodies.into_iter().map(|body| Some(Body::Convex(body))).collect();
+        let bodies: Vec<_> = bodies.into_iter().map(|body| Some(Slot::Body(Body::Convex(body)))).collect();
         let mut boxes = Vec::with_capacity(bodies.len());
-        for (index, body) in bodies.iter().enumerate() {
-            let around = body.as_ref().and_then(Body::convex).and_then(outer_box);
+        for (index, slot) in bodies.iter().enumerate() {
+            let around = slot.as_ref().and_then(Slot::around);
             boxes.push(around.ok_or(SceneError::NotFinite { body: index })?);
         }
-        Ok(Self { bodies, tree: Bvh::new(&boxes), half_spaces: Vec::new(), free: Vec::new() })
+        let members = bodies.len();
+        Ok(Self { bodies, tree: Bvh::new(&boxes), members, half_spaces: Vec::new(), free: Vec::new() })
     }
 
     /// The number of bodies.
@@ -121,15 +165,40 @@ impl<S: SupportMap> Scene<S> {
         self.len() == 0
     }
 
-    /// The body with this index, if there is one: a shape, or a half-space.
+    /// The body with this index, if there is one: a shape, or a half-space. For instances of groups see
+    /// [`instance`](Self::instance) and [`member`](Self::member).
     #[must_use]
     pub fn get(&self, body: usize) -> Option<&Body<S>> {
-        self.bodies.get(body)?.as_ref()
+        self.slot(body)?.body()
     }
 
-    /// The bodies with their indices, which need not follow one another where bodies were removed.
+    /// The instance with this index, if there is one.
+    #[must_use]
+    pub fn instance(&self, body: usize) -> Option<&Instance<S::Vector>> {
+        self.slot(body)?.instance()
+    }
+
+    /// The member of an instance as it is in the world, such as for the derivatives of an answer, or the certificate;
+    /// `None` if there is none. Its single queries are, to the last bit, those of the scene.
+    #[must_use]
+    pub fn member(&self, body: usize, member: usize) -> Option<Posed<Box<dyn SupportMap<Vector = S::Vector> + '_>>> {
+        self.instance(body)?.member(member)
+    }
+
+    #[inline]
+    fn slot(&self, index: usize) -> Option<&Slot<S>> {
+        self.bodies.get(index)?.as_ref()
+    }
+
+    /// The bodies with their indices, which need not follow one another where bodies were removed. Instances are left
+    /// out.
     pub fn iter(&self) -> impl Iterator<Item = (usize, &Body<S>)> {
-        self.bodies.iter().enumerate().filter_map(|(index, body)| Some((index, body.as_ref()?)))
+        self.bodies.iter().enumerate().filter_map(|(index, slot)| Some((index, slot.as_ref()?.body()?)))
+    }
+
+    /// The instances with their indices.
+    pub fn instances(&self) -> impl Iterator<Item = (usize, &Instance<S::Vector>)> {
+        self.bodies.iter().enumerate().filter_map(|(index, slot)| Some((index, slot.as_ref()?.instance()?)))
     }
 
     /// The tree of the bodies' boxes: its items are the indices of the bodies.
@@ -143,38 +212,91 @@ impl<S: SupportMap> Scene<S> {
     /// # Errors
     /// [`SceneError::NotFinite`], with the index that the body would have had, if its box is not finite.
     pub fn insert(&mut self, body: S) -> Result<usize, SceneError> {
-        let index = self.free.last().copied().unwrap_or(self.bodies.len());
+        let index = self.next_index();
         let around = outer_box(&body).ok_or(SceneError::NotFinite { body: index })?;
-        self.put(index, Body::Convex(body));
+        self.put(index, Slot::Body(Body::Convex(body)));
         self.tree.insert(index, around);
         Ok(index)
     }
 
+    /// Adds an instance of a group, and returns its index. Its members are asked wherever bodies are, and have a number
+    /// in the answer beside the index, but make no pairs with each other.
+    ///
+    /// # Errors
+    /// With the index that the body would have had, [`SceneError::NoPose`] if a number of the pose is not finite or the
+    /// quaternion is zero, and [`SceneError::NotFinite`] if the box is not finite; [`SceneError::TooDeep`] if there are
+    /// too many members to count.
+    pub fn insert_group(&mut self, group: &Group<S::Vector>, pose: Pose<S::Vector>) -> Result<usize, SceneError> {
+        let index = self.next_index();
+        let instance = Instance::new(index, group.clone(), pose)?;
+        let around = instance.around();
+        self.members.checked_add(group.len()).ok_or(SceneError::TooDeep)?;
+        self.put(index, Slot::Instance(Box::new(instance)));
+        self.tree.insert(index, around);
+        Ok(index)
+    }
+
+    /// Moves an instance. Only its own box changes, whatever its group is made of.
+    ///
+    /// # Errors
+    /// [`SceneError::NoSuchInstance`], [`SceneError::NoPose`] or [`SceneError::NotFinite`]. The scene is then as before.
+    pub fn place(&mut self, body: usize, pose: Pose<S::Vector>) -> Result<(), SceneError> {
+        let Some(Some(Slot::Instance(instance))) = self.bodies.get_mut(body) else {
+            return Err(SceneError::NoSuchInstance { body });
+        };
+        instance.place(body, pose)?;
+        self.tree.set(body, instance.around());
+        Ok(())
+    }
+
+    fn next_index(&self) -> usize {
+        self.free.last().copied().unwrap_or(self.bodies.len())
+    }
+
     /// Adds a half-space, and returns its index.
     pub fn insert_half_space(&mut self, half_space: HalfSpace<S::Vector>) -> usize {
-        let index = self.free.last().copied().unwrap_or(self.bodies.len());
-        self.put(index, Body::HalfSpace(half_space));
+        let index = self.next_index();
+        self.put(index, Slot::Body(Body::HalfSpace(half_space)));
         let place = self.half_spaces.partition_point(|&other| other < index);
         self.half_spaces.insert(place, index);
         index
     }
 
-    fn put(&mut self, index: usize, body: Body<S>) {
+    fn put(&mut self, index: usize, slot: Slot<S>) {
+        self.members += slot.members();
         if self.free.last() == Some(&index) {
             self.free.pop();
-            self.bodies[index] = Some(body);
+            self.bodies[index] = Some(slot);
         } else {
-            self.bodies.push(Some(body));
+            self.bodies.push(Some(slot));
         }
     }
 
-    /// Takes a body out and returns it; `None` if there is no body with this index. A body that is added later may get
-    /// the index.
+    /// Takes a body out and returns it; `None` if there is no body with this index, or an instance. A body that is
+    /// added later may get the index.
     pub fn remove(&mut self, body: usize) -> Option<Body<S>> {
-        let removed = self.bodies.get_mut(body)?.take()?;
-        self.free.push(body);
-        self.tree.remove(body);
-        self.half_spaces.retain(|&half_space| half_space != body);
+        self.get(body)?;
+        match self.take(body)? {
+            Slot::Body(removed) => Some(removed),
+            Slot::Instance(_) => None,
+        }
+    }
+
+    /// Takes an instance out and returns it; `None` if there is no instance with this index.
+    pub fn remove_instance(&mut self, body: usize) -> Option<Instance<S::Vector>> {
+        self.instance(body)?;
+        match self.take(body)? {
+            Slot::Instance(removed) => Some(*removed),
+            Slot::Body(_) => None,
+        }
+    }
+
+    fn take(&mut self, index: usize) -> Option<Slot<S>> {
+        let removed = self.bodies.get_mut(index)?.take()?;
+        self.members -= removed.members();
+        self.free.push(index);
+        self.tree.remove(index);
+        self.half_spaces.retain(|&half_space| half_space != index);
         Some(removed)
     }
 
@@ -184,7 +306,7 @@ impl<S: SupportMap> Scene<S> {
     /// [`SceneError::NoSuchBody`] if no bounded body has this index; [`SceneError::NotFinite`] if the box of the new
     /// one is not finite. The scene is then as before.
     pub fn replace(&mut self, index: usize, body: S) -> Result<S, SceneError> {
-        let Some(Some(Body::Convex(place))) = self.bodies.get_mut(index) else {
+        let Some(Some(Slot::Body(Body::Convex(place)))) = self.bodies.get_mut(index) else {
             return Err(SceneError::NoSuchBody { body: index });
         };
         let around = outer_box(&body).ok_or(SceneError::NotFinite { body: index })?;
@@ -193,30 +315,57 @@ impl<S: SupportMap> Scene<S> {
     }
 
     /// Replaces every bounded body by the one that `moved` returns for its index and the body, in the order of the
-    /// indices, in time proportional to their number.
+    /// indices, in time proportional to their number. Instances stay where they are.
     ///
     /// # Errors
     /// [`SceneError::NotFinite`] for the first body whose box would not be finite. All such bodies stay as they were,
     /// and the rest are moved.
     pub fn update(&mut self, mut moved: impl FnMut(usize, &S) -> S) -> Result<(), SceneError> {
-        let mut refused = None;
-        let bodies = &mut self.bodies;
-        let nowhere = Aabb { min: S::Vector::ZERO, max: S::Vector::ZERO };
-        self.tree.refit(|index| {
-            let Some(Some(Body::Convex(body))) = bodies.get_mut(index) else { return nowhere };
+        self.refit(|index, slot| {
+            let Slot::Body(Body::Convex(body)) = slot else { return Ok(slot.around()) };
             let next = moved(index, body);
-            match outer_box(&next) {
-                Some(around) => {
-                    *body = next;
-                    around
-                }
-                None => {
-                    refused = refused.or(Some(index));
-                    outer_box(body).unwrap_or(nowhere)
-                }
+            let around = outer_box(&next).ok_or(SceneError::NotFinite { body: index })?;
+            *body = next;
+            Ok(Some(around))
+        })
+    }
+
+    /// Gives every instance the pose that `moved` returns for its index and the instance, in the order of the indices,
+    /// in time proportional to the number of bodies. Other bodies stay where they are.
+    ///
+    /// # Errors
+    /// [`SceneError::NoPose`] or [`SceneError::NotFinite`] for the first instance that has no place there. All such
+    /// instances stay where they were, and the rest are moved.
+    pub fn update_instances(
+        &mut self,
+        mut moved: impl FnMut(usize, &Instance<S::Vector>) -> Pose<S::Vector>,
+    ) -> Result<(), SceneError> {
+        self.refit(|index, slot| {
+            if let Slot::Instance(instance) = slot {
+                instance.place(index, moved(index, instance))?;
             }
+            Ok(slot.around())
+        })
+    }
+
+    /// Gives every bounded body the box that `moved` returns, or its own if that is refused; returns the first error.
+    fn refit(
+        &mut self,
+        mut moved: impl FnMut(usize, &mut Slot<S>) -> Result<Option<Aabb<S::Vector>>, SceneError>,
+    ) -> Result<(), SceneError> {
+        let mut refused = Ok(());
+        let bodies = &mut self.bodies;
+        self.tree.refit(|index| {
+            let around = bodies.get_mut(index).and_then(Option::as_mut).and_then(|slot| match moved(index, slot) {
+                Ok(around) => around,
+                Err(why) => {
+                    refused = refused.and(Err(why));
+                    slot.around()
+                }
+            });
+            around.unwrap_or(Aabb { min: S::Vector::ZERO, max: S::Vector::ZERO })
         });
-        refused.map_or(Ok(()), |body| Err(SceneError::NotFinite { body }))
+        refused
     }
 
     /// Rebuilds the tree. Nothing else changes; after many insertions, questions may become faster.
@@ -227,7 +376,7 @@ impl<S: SupportMap> Scene<S> {
 
 impl<S: SupportMap> Default for Scene<S> {
     fn default() -> Self {
-        Self { bodies: Vec::new(), tree: Bvh::default(), half_spaces: Vec::new(), free: Vec::new() }
+        Self { bodies: Vec::new(), tree: Bvh::default(), members: 0, half_spaces: Vec::new(), free: Vec::new() }
     }
 }
 
@@ -276,8 +425,8 @@ impl<V: Vector3> Scene<Triangle<V>> {
     }
 }
 
-/// Why a scene refused a body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Why a scene refused a body, or cannot be a group.
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum SceneError {
@@ -291,6 +440,27 @@ pub enum SceneError {
         /// The index.
         body: usize,
     },
+    /// No instance has this index.
+    NoSuchInstance {
+        /// The index.
+        body: usize,
+    },
+    /// The pose of an instance is none: a number is not finite, or the quaternion is zero.
+    NoPose {
+        /// The index of the body.
+        body: usize,
+        /// What is wrong with it.
+        why: InvalidShape,
+    },
+    /// A group without members has no box.
+    EmptyGroup,
+    /// A member of a group is a half-space, which no box contains; it can be a body beside the instances.
+    UnboundedMember {
+        /// The index of the body in the group.
+        member: usize,
+    },
+    /// Groups are nested too deep, or have more members than can be counted.
+    TooDeep,
     /// A triangle names a vertex that is not there.
     NoSuchVertex {
         /// The index of the triangle.
@@ -307,6 +477,13 @@ impl Display for SceneError {
                 write!(f, "body {body} has no finite bounding box: one of its support points is NaN or infinite")
             }
             Self::NoSuchBody { body } => write!(f, "no bounded body has the index {body}"),
+            Self::NoSuchInstance { body } => write!(f, "no instance of a group has the index {body}"),
+            Self::NoPose { body, why } => write!(f, "body {body}, an instance, has no pose: {why}"),
+            Self::EmptyGroup => f.write_str("a group has no members, but at least one is needed"),
+            Self::UnboundedMember { member } => {
+                write!(f, "member {member} of a group is a half-space: insert it into the scene of the instances")
+            }
+            Self::TooDeep => f.write_str("groups are nested more than 16 deep, or have too many members to count"),
             Self::NoSuchVertex { triangle, vertex } => {
                 write!(f, "triangle {triangle} has a corner with the index {vertex}, but there is no such vertex")
             }

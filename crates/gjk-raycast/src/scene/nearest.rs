@@ -7,9 +7,9 @@ use core::ops::ControlFlow;
 use convex_support::{Aabb, BoxDistance, Scalar, ScalarOf, SupportMap, outer_box};
 use num_traits::Float;
 
-use super::Body;
 use super::among::Among;
 use super::answers::{BodyDistance, BodySignedDistance, SceneDistance, SceneSignedDistance, Work, reuse};
+use super::instance::{Asked, Id, asked};
 use crate::{DistanceOptions, SignedDistanceOptions};
 
 impl<S: SupportMap> Among<'_, S> {
@@ -22,13 +22,13 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> SceneDistance<S::Vector> {
         // A body that is certainly farther than the nearest needs no close bounds. A body is at least as far as its
         // box, so that, as for casts, it counts from its distance or from where its box begins, whichever is farther.
-        let (mut nearest, mut limit, mut lower) = (None, (options.limit, usize::MAX), options.limit);
-        let Ok(work) = self.in_order(&distance_of(shape), options.limit, |index, from, body| {
-            let distance = body.distance_from(shape, options.with_limit(limit.0));
+        let (mut nearest, mut limit, mut lower) = (None, (options.limit, Id::LAST), options.limit);
+        let Ok(work) = self.in_order(&distance_of(shape), options.limit, |id, from, body| {
+            let distance = asked!(body, body => body.distance_from(shape, options.with_limit(limit.0)));
             lower = Float::min(lower, Float::max(distance.lower, from));
-            let key = (Float::max(distance.distance, from), index);
+            let key = (Float::max(distance.distance, from), id);
             if key < limit {
-                (nearest, limit) = (Some(BodyDistance { body: index, distance }), key);
+                (nearest, limit) = (Some(BodyDistance { body: id.body, member: id.member, distance }), key);
             }
             Ok::<_, Infallible>(ControlFlow::Continue(limit))
         });
@@ -60,14 +60,14 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Work {
         let bodies = reuse(bodies);
         // The keys of the bodies found.
-        let (mut keys, mut limit) = (Vec::new(), (options.limit, usize::MAX));
-        let Ok(work) = self.in_order(&distance_of(shape), options.limit, |index, from, body| {
-            let distance = body.distance_from(shape, options.with_limit(limit.0));
-            let key = (Float::max(distance.distance, from), index);
+        let (mut keys, mut limit) = (Vec::new(), (options.limit, Id::LAST));
+        let Ok(work) = self.in_order(&distance_of(shape), options.limit, |id, from, body| {
+            let distance = asked!(body, body => body.distance_from(shape, options.with_limit(limit.0)));
+            let key = (Float::max(distance.distance, from), id);
             if key < limit {
                 let place = keys.partition_point(|other| *other < key);
                 keys.insert(place, key);
-                bodies.insert(place, BodyDistance { body: index, distance });
+                bodies.insert(place, BodyDistance { body: id.body, member: id.member, distance });
                 keys.truncate(count);
                 bodies.truncate(count);
                 limit = if keys.len() < count { limit } else { keys.last().copied().unwrap_or(limit) };
@@ -101,17 +101,18 @@ impl<S: SupportMap> Among<'_, S> {
         let zero = ScalarOf::<S>::ZERO;
         // NaN is no limit.
         let end = Float::min(options.limit, Float::infinity());
-        let (mut least, mut key, mut lower) = (None, (end, usize::MAX), end);
-        let Ok(work) = self.in_order(&distance_of(shape), end, |index, from, body| {
-            let distance = body.signed_distance(shape, options.with_limit(Float::max(key.0, zero)));
+        let (mut least, mut key, mut lower) = (None, (end, Id::LAST), end);
+        let Ok(work) = self.in_order(&distance_of(shape), end, |id, from, body| {
+            let options = options.with_limit(Float::max(key.0, zero));
+            let distance = asked!(body, body => body.signed_distance(shape, options));
             // Bodies are at least as far apart as their boxes; boxes that meet give no bound.
             let at_least = |value| if from > zero { Float::max(value, from) } else { value };
             lower = Float::min(lower, at_least(distance.lower));
-            let next = (at_least(distance.signed_distance), index);
+            let next = (at_least(distance.signed_distance), id);
             if next < key {
-                (least, key) = (Some(BodySignedDistance { body: index, distance }), next);
+                (least, key) = (Some(BodySignedDistance { body: id.body, member: id.member, distance }), next);
             }
-            Ok::<_, Infallible>(ControlFlow::Continue(if key.0 > zero { key } else { (zero, usize::MAX) }))
+            Ok::<_, Infallible>(ControlFlow::Continue(if key.0 > zero { key } else { (zero, Id::LAST) }))
         });
         let lower = if work.cancelled { Float::min_value() } else { lower };
         SceneSignedDistance { least, lower, work }
@@ -127,11 +128,11 @@ impl<S: SupportMap> Among<'_, S> {
         bodies: &mut Vec<BodyDistance<S::Vector>>,
     ) -> Work {
         let options = options.with_limit(within);
-        let work = self.near(shape, within, reuse(bodies), |index, body| {
-            let distance = body.distance_from(shape, options);
-            (distance.distance <= within).then_some(BodyDistance { body: index, distance })
+        let work = self.near(shape, within, reuse(bodies), |id, body| {
+            let distance = asked!(body, body => body.distance_from(shape, options));
+            (distance.distance <= within).then_some(BodyDistance { body: id.body, member: id.member, distance })
         });
-        bodies.sort_unstable_by_key(|found| found.body);
+        bodies.sort_unstable_by_key(|found| (found.body, found.member));
         work
     }
 
@@ -142,18 +143,26 @@ impl<S: SupportMap> Among<'_, S> {
         shape: &A,
         within: ScalarOf<S>,
         found: &mut Vec<R>,
-        tell: impl Fn(usize, &Body<S>) -> Option<R>,
+        tell: impl Fn(Id, Asked<'_, '_, S>) -> Option<R>,
     ) -> Work {
-        let mut work = Work::default();
+        let (mut work, mut nodes, question) = (Work::default(), 0, distance_of(shape));
         let mut look = |index: usize| {
-            if let Some(body) = self.asked(index, &mut work)? {
-                found.extend(tell(index, body));
-            }
-            ControlFlow::Continue(())
+            let mut ask = |id: Id, _, body: Asked<'_, '_, S>| {
+                if self.stops(&mut work) {
+                    return ControlFlow::Break(());
+                }
+                work.tested += 1;
+                found.extend(tell(id, body));
+                ControlFlow::Continue(within)
+            };
+            let Some(slot) = self.slot(index) else { return ControlFlow::Continue(()) };
+            let next = slot.each_member((index, Scalar::ZERO), &question, within, &mut nodes, &mut ask);
+            next.map_continue(|_| ())
         };
         if self.scene.half_spaces.iter().try_for_each(|&index| look(index)).is_continue() {
-            work.nodes = self.scene.tree.within(&distance_of(shape), within, look);
+            work.nodes = self.scene.tree.within(&question, within, look);
         }
+        work.nodes += nodes;
         self.finish(&mut work);
         work
     }

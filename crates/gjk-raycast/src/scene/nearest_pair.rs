@@ -13,8 +13,9 @@ use super::among::Among;
 use super::answers::Work;
 use super::answers::{PairDistance, SceneAnyWithin, ScenePair};
 use super::bounds::HeightBound;
+use super::instance::{Asked, Id, asked, asked_pair};
 use super::nearest::distance_of as distance_of_boxes;
-use super::pairs::{BodyPair, Pairing, distance_of};
+use super::pairs::{Pairing, TestPair, beside_box, distance_of};
 use crate::{Distance, DistanceOptions};
 
 impl<S: SupportMap> Among<'_, S> {
@@ -81,9 +82,9 @@ impl<S: SupportMap> Among<'_, S> {
         options: DistanceOptions<S::Vector>,
     ) -> SceneAnyWithin<usize> {
         let mut any = Any { within, any: false, undecided: None };
-        let Ok(work) = self.in_order(&distance_of_boxes(shape), within, |index, from, body| {
-            let distance = body.distance_from(shape, options.with_limit(within));
-            Ok::<_, Infallible>(any.add(index, from, &distance).map_continue(|()| (within, usize::MAX)))
+        let Ok(work) = self.in_order(&distance_of_boxes(shape), within, |id, from, body| {
+            let distance = asked!(body, body => body.distance_from(shape, options.with_limit(within)));
+            Ok::<_, Infallible>(any.add(id.body, from, &distance).map_continue(|()| (within, Id::LAST)))
         });
         SceneAnyWithin { any: any.any, undecided: any.undecided, work }
     }
@@ -111,70 +112,82 @@ impl<S: SupportMap> Among<'_, S> {
 }
 
 /// A value from which on no pair counts: that of a pair, whose indices decide among equals.
-type Limit<N> = (N, [usize; 2]);
+type Limit<N> = (N, [Id; 2]);
 
 /// The limit `end` itself is within it.
 fn up_to<N>(end: N) -> Limit<N> {
-    (end, [usize::MAX; 2])
+    (end, [Id::LAST; 2])
 }
 
+/// A question about the pairs whose bound may be below a limit. `ask` takes the bound and the pair, and returns the next
+/// limit, or a break, which ends the search.
+struct Limited<N, F> {
+    limit: Limit<N>,
+    ask: F,
+}
+
+impl<S, T, F> TestPair<S, T> for Limited<ScalarOf<S>, F>
+where
+    S: SupportMap,
+    T: SupportMap<Vector = S::Vector>,
+    F: FnMut(ScalarOf<S>, AskedPair<'_, '_, '_, '_, S, T>) -> ControlFlow<(), Limit<ScalarOf<S>>>,
+{
+    fn limit(&self) -> ScalarOf<S> {
+        self.limit.0
+    }
+
+    fn is_late(&self, pair: [Id; 2], from: ScalarOf<S>) -> bool {
+        from >= self.limit.0 && pair >= self.limit.1
+    }
+
+    fn test(&mut self, pair: [Id; 2], from: ScalarOf<S>, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>) -> ControlFlow<()> {
+        self.limit = (self.ask)(from, (pair, a, b))?;
+        ControlFlow::Continue(())
+    }
+}
+
+/// The bodies of a pair, or their members.
+type AskedPair<'a, 'm, 'b, 'n, S, T> = ([Id; 2], Asked<'a, 'm, S>, Asked<'b, 'n, T>);
+
 impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'_, S, T> {
-    /// Tests the pairs of bounded bodies whose bound may be below the limit, mostly in the order of their bounds. `ask`
-    /// takes the bound and the pair, and returns the next limit, or a break, which ends the search.
+    /// Tests the pairs of bounded bodies whose bound may be below the limit, mostly in the order of their bounds.
     fn in_order(
         &mut self,
         mut boxes: NearestPairs<'_, S::Vector>,
-        limit: &mut Limit<ScalarOf<S>>,
-        ask: &mut impl FnMut(ScalarOf<S>, BodyPair<'_, S, T>) -> ControlFlow<(), Limit<ScalarOf<S>>>,
+        question: &mut impl TestPair<S, T>,
     ) -> ControlFlow<()> {
         let mut ended = ControlFlow::Continue(());
         while ended.is_continue()
-            && let Some((pair, from)) = boxes.next(limit.0)
+            && let Some((pair, from)) = boxes.next(question.limit())
         {
-            ended = self.look(pair, from, limit, ask);
+            ended = self.ask(pair, from, &beside_box, question);
         }
         self.work.nodes += boxes.nodes();
         ended
     }
 
     /// Tests the pairs with half-spaces in the same way.
-    fn half_spaces_in_order(
-        &mut self,
-        limit: &mut Limit<ScalarOf<S>>,
-        ask: &mut impl FnMut(ScalarOf<S>, BodyPair<'_, S, T>) -> ControlFlow<(), Limit<ScalarOf<S>>>,
-    ) -> ControlFlow<()> {
+    fn half_spaces_in_order(&mut self, question: &mut impl TestPair<S, T>) -> ControlFlow<()> {
         let (Self { a, b, same, .. }, mut ended) = (*self, ControlFlow::Continue(()));
         for (index, half_space) in a.half_spaces() {
-            let nodes = b.scene.tree.search(&HeightBound::new(half_space), limit.0, |other, from| {
-                ended = self.look([index, other], from, limit, ask);
-                ended.map_continue(|()| limit.0)
+            let height = HeightBound::new(half_space);
+            let nodes = b.scene.tree.search(&height, question.limit(), |other, from| {
+                ended = self.ask([index, other], from, &|_| height, question);
+                ended.map_continue(|()| question.limit())
             });
             self.work.nodes += nodes;
             ended?;
         }
         for (index, half_space) in b.half_spaces().filter(|_| !same) {
-            let nodes = a.scene.tree.search(&HeightBound::new(half_space), limit.0, |other, from| {
-                ended = self.look([other, index], from, limit, ask);
-                ended.map_continue(|()| limit.0)
+            let height = HeightBound::new(half_space);
+            let nodes = a.scene.tree.search(&height, question.limit(), |other, from| {
+                ended = self.ask([other, index], from, &|_| height, question);
+                ended.map_continue(|()| question.limit())
             });
             self.work.nodes += nodes;
             ended?;
         }
         ended
-    }
-
-    fn look(
-        &mut self,
-        pair: [usize; 2],
-        from: ScalarOf<S>,
-        limit: &mut Limit<ScalarOf<S>>,
-        ask: &mut impl FnMut(ScalarOf<S>, BodyPair<'_, S, T>) -> ControlFlow<(), Limit<ScalarOf<S>>>,
-    ) -> ControlFlow<()> {
-        let is_late = |pair| from >= limit.0 && pair >= limit.1;
-        if let Some(found) = self.asked(pair, is_late)? {
-            *limit = ask(from, found)?;
-        }
-        ControlFlow::Continue(())
     }
 }
 
@@ -191,14 +204,15 @@ impl<V: Vector> Least<V> {
     fn add<S: SupportMap<Vector = V>, T: SupportMap<Vector = V>>(
         &mut self,
         from: V::Scalar,
-        ([a, b], first, second): BodyPair<'_, S, T>,
+        (pair, a, b): AskedPair<'_, '_, '_, '_, S, T>,
         options: DistanceOptions<V>,
     ) -> Limit<V::Scalar> {
-        if let Some(distance) = distance_of(first, second, options.with_limit(self.limit.0)) {
+        let options = options.with_limit(self.limit.0);
+        if let Some(distance) = asked_pair!(a, b => distance_of(a, b, options)) {
             self.lower = Float::min(self.lower, Float::max(distance.lower, from));
-            let key = (Float::max(distance.distance, from), [a, b]);
+            let key = (Float::max(distance.distance, from), pair);
             if key < self.limit {
-                (self.nearest, self.limit) = (Some(PairDistance { a, b, distance }), key);
+                (self.nearest, self.limit) = (Some(PairDistance::of(pair, distance)), key);
             }
         }
         self.limit
@@ -212,11 +226,11 @@ fn least<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
     options: DistanceOptions<S::Vector>,
 ) -> ScenePair<S::Vector> {
     let mut found = nothing(options);
-    let mut ask = |from, pair: BodyPair<'_, S, T>| ControlFlow::Continue(found.add(from, pair, options));
-    let mut limit = up_to(no_limit_if_nan(options.limit));
-    if pairing.half_spaces_in_order(&mut limit, &mut ask).is_continue() {
+    let ask = |from, pair: AskedPair<'_, '_, '_, '_, S, T>| ControlFlow::Continue(found.add(from, pair, options));
+    let mut question = Limited { limit: up_to(no_limit_if_nan(options.limit)), ask };
+    if pairing.half_spaces_in_order(&mut question).is_continue() {
         // The search is over, so a break no longer matters.
-        let _ = pairing.in_order(boxes, &mut limit, &mut ask);
+        let _ = pairing.in_order(boxes, &mut question);
     }
     answer(found, pairing)
 }
@@ -254,16 +268,18 @@ fn par_least<S: SupportMap + Sync, T: SupportMap<Vector = S::Vector> + Sync>(
     /// What one thread tests before: then the limit is mostly near the end already.
     const BEFORE: usize = 64;
     let mut found = nothing(options);
-    let mut limit = found.limit;
-    let mut ask = |from, pair: BodyPair<'_, S, T>| ControlFlow::Continue(found.add(from, pair, options));
-    let mut ended = pairing.half_spaces_in_order(&mut limit, &mut ask);
+    let limit = found.limit;
+    let ask = |from, pair: AskedPair<'_, '_, '_, '_, S, T>| ControlFlow::Continue(found.add(from, pair, options));
+    let mut question = Limited { limit, ask };
+    let mut ended = pairing.half_spaces_in_order(&mut question);
     let mut left = BEFORE;
     while ended.is_continue()
         && left > 0
-        && let Some((pair, from)) = boxes.next(limit.0)
+        && let Some((pair, from)) = boxes.next(question.limit.0)
     {
-        (left, ended) = (left - 1, pairing.look(pair, from, &mut limit, &mut ask));
+        (left, ended) = (left - 1, pairing.ask(pair, from, &beside_box, &mut question));
     }
+    let limit = question.limit;
     if ended.is_break() {
         pairing.work.nodes += boxes.nodes();
         return answer(found, pairing);
@@ -275,8 +291,8 @@ fn par_least<S: SupportMap + Sync, T: SupportMap<Vector = S::Vector> + Sync>(
         .deal(PARTS)
         .into_par_iter()
         .map(|part| {
-            let (mut pairing, mut found, mut limit) = (before, Least { nearest: None, ..found }, limit);
-            let _ = pairing.in_order(part, &mut limit, &mut |from, pair| {
+            let (mut pairing, mut found) = (before, Least { nearest: None, ..found });
+            let ask = |from, pair: AskedPair<'_, '_, '_, '_, S, T>| {
                 let of_all = up_to(ScalarOf::<S>::from_f64(f64::from_bits(shared.load(Ordering::Relaxed))));
                 if of_all < found.limit {
                     found = Least { nearest: None, limit: of_all, ..found };
@@ -284,7 +300,8 @@ fn par_least<S: SupportMap + Sync, T: SupportMap<Vector = S::Vector> + Sync>(
                 let limit = found.add(from, pair, options);
                 shared.fetch_min(limit.0.as_f64().to_bits(), Ordering::Relaxed);
                 ControlFlow::Continue(limit)
-            });
+            };
+            let _ = pairing.in_order(part, &mut Limited { limit, ask });
             (found, pairing.work)
         })
         .collect();
@@ -327,14 +344,15 @@ fn any<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
     within: ScalarOf<S>,
     options: DistanceOptions<S::Vector>,
 ) -> SceneAnyWithin<[usize; 2]> {
-    let (mut any, mut limit) = (Any { within, any: false, undecided: None }, up_to(within));
-    let options = options.with_limit(within);
-    let mut ask = |from, (pair, a, b): BodyPair<'_, S, T>| match distance_of(a, b, options) {
-        Some(distance) => any.add(pair, from, &distance).map_continue(|()| up_to(within)),
+    let (mut any, options) = (Any { within, any: false, undecided: None }, options.with_limit(within));
+    let ask = |from, (pair, a, b): AskedPair<'_, '_, '_, '_, S, T>| match asked_pair!(a, b => distance_of(a, b, options))
+    {
+        Some(distance) => any.add(pair.map(|id| id.body), from, &distance).map_continue(|()| up_to(within)),
         None => ControlFlow::Continue(up_to(within)),
     };
-    if pairing.half_spaces_in_order(&mut limit, &mut ask).is_continue() {
-        let _ = pairing.in_order(boxes, &mut limit, &mut ask);
+    let mut question = Limited { limit: up_to(within), ask };
+    if pairing.half_spaces_in_order(&mut question).is_continue() {
+        let _ = pairing.in_order(boxes, &mut question);
     }
     SceneAnyWithin { any: any.any, undecided: any.undecided, work: pairing.finish() }
 }

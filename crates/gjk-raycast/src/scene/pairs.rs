@@ -3,12 +3,13 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use convex_support::{PairSearch, ScalarOf, SupportMap, Vector};
+use convex_support::{Aabb, BoxDistance, Bvh, PairSearch, Scalar, ScalarOf, SupportMap, Vector};
 
 use super::among::Among;
 use super::answers::{PairContact, PairDistance, Work, reuse};
-use super::bounds::HeightBound;
-use super::{Body, Scene};
+use super::bounds::{HeightBound, Question};
+use super::instance::{Asked, Id, asked_pair};
+use super::{Body, Scene, Slot};
 use crate::{Distance, DistanceOptions, distance};
 
 impl<S: SupportMap> Among<'_, S> {
@@ -22,7 +23,11 @@ impl<S: SupportMap> Among<'_, S> {
         options: DistanceOptions<S::Vector>,
         pairs: &mut Vec<PairDistance<S::Vector>>,
     ) -> Work {
-        self.find_pairs(within, pairs, &|pair, a, b| between(pair, a, b, options.with_limit(within)))
+        self.find_pairs(
+            within,
+            pairs,
+            &|pair, a, b| asked_pair!(a, b => between(pair, a, b, options.with_limit(within))),
+        )
     }
 
     /// Finds all pairs of one of these bodies, `a`, and any of another scene, `b`, that are no farther than `within`
@@ -34,7 +39,12 @@ impl<S: SupportMap> Among<'_, S> {
         options: DistanceOptions<S::Vector>,
         pairs: &mut Vec<PairDistance<S::Vector>>,
     ) -> Work {
-        self.find_pairs_between(other, within, pairs, &|pair, a, b| between(pair, a, b, options.with_limit(within)))
+        self.find_pairs_between(
+            other,
+            within,
+            pairs,
+            &|pair, a, b| asked_pair!(a, b => between(pair, a, b, options.with_limit(within))),
+        )
     }
 
     /// [`pairs_within`](Self::pairs_within) on all threads of the current [rayon](https://docs.rs/rayon) pool, with the
@@ -49,7 +59,11 @@ impl<S: SupportMap> Among<'_, S> {
     where
         S: Sync,
     {
-        self.par_find_pairs(within, pairs, &|pair, a, b| between(pair, a, b, options.with_limit(within)))
+        self.par_find_pairs(
+            within,
+            pairs,
+            &|pair, a, b| asked_pair!(a, b => between(pair, a, b, options.with_limit(within))),
+        )
     }
 
     /// Collects the results of `tell` for the pairs of these bodies whose boxes are no farther than `within` from each
@@ -58,9 +72,9 @@ impl<S: SupportMap> Among<'_, S> {
         &self,
         within: ScalarOf<S>,
         pairs: &mut Vec<P>,
-        tell: &impl Fn([usize; 2], &Body<S>, &Body<S>) -> Option<P>,
+        tell: &impl Fn([Id; 2], Asked<'_, '_, S>, Asked<'_, '_, S>) -> Option<P>,
     ) -> Work {
-        let mut asking = Asking { pairing: Pairing::within(*self), within, tell, pairs: reuse(pairs) };
+        let mut asking = Asking::new(Pairing::within(*self), within, tell, reuse(pairs));
         asking.search(self.scene.tree.pairs_within(within));
         asking.finish()
     }
@@ -71,9 +85,9 @@ impl<S: SupportMap> Among<'_, S> {
         other: &Scene<T>,
         within: ScalarOf<S>,
         pairs: &mut Vec<P>,
-        tell: &impl Fn([usize; 2], &Body<S>, &Body<T>) -> Option<P>,
+        tell: &impl Fn([Id; 2], Asked<'_, '_, S>, Asked<'_, '_, T>) -> Option<P>,
     ) -> Work {
-        let mut asking = Asking { pairing: Pairing::between(*self, other), within, tell, pairs: reuse(pairs) };
+        let mut asking = Asking::new(Pairing::between(*self, other), within, tell, reuse(pairs));
         asking.search(self.scene.tree.pairs_between(&other.tree, within));
         asking.finish()
     }
@@ -83,7 +97,7 @@ impl<S: SupportMap> Among<'_, S> {
         &self,
         within: ScalarOf<S>,
         pairs: &mut Vec<P>,
-        tell: &(impl Fn([usize; 2], &Body<S>, &Body<S>) -> Option<P> + Sync),
+        tell: &(impl Fn([Id; 2], Asked<'_, '_, S>, Asked<'_, '_, S>) -> Option<P> + Sync),
     ) -> Work
     where
         S: Sync,
@@ -97,14 +111,14 @@ impl<S: SupportMap> Among<'_, S> {
             .into_par_iter()
             .map(|piece| {
                 let mut pairs = Vec::new();
-                let mut asking = Asking { pairing, within, tell, pairs: &mut pairs };
+                let mut asking = Asking::new(pairing, within, tell, &mut pairs);
                 asking.search(piece);
                 (asking.pairing.work, pairs)
             })
             .collect();
-        let mut asking = Asking { pairing, within, tell, pairs: reuse(pairs) };
+        let mut asking = Asking::new(pairing, within, tell, reuse(pairs));
         for (work, pairs) in found {
-            asking.pairs.extend(pairs);
+            asking.found.pairs.extend(pairs);
             asking.pairing.count(work);
         }
         asking.finish()
@@ -113,18 +127,18 @@ impl<S: SupportMap> Among<'_, S> {
 
 /// An element of a list of pairs.
 pub(super) trait OfPair {
-    fn indices(&self) -> [usize; 2];
+    fn ids(&self) -> [Id; 2];
 }
 
 impl<V: Vector> OfPair for PairDistance<V> {
-    fn indices(&self) -> [usize; 2] {
-        [self.a, self.b]
+    fn ids(&self) -> [Id; 2] {
+        [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
     }
 }
 
 impl<V: Vector> OfPair for PairContact<V> {
-    fn indices(&self) -> [usize; 2] {
-        [self.a, self.b]
+    fn ids(&self) -> [Id; 2] {
+        [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
     }
 }
 
@@ -145,6 +159,18 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Clone for Pairing<'_, S, 
 
 impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Copy for Pairing<'_, S, T> {}
 
+/// What a question does with the pairs that it comes to.
+pub(super) trait TestPair<S: SupportMap, T: SupportMap<Vector = S::Vector>> {
+    /// The bound from which on pairs no longer count.
+    fn limit(&self) -> ScalarOf<S>;
+
+    /// Whether a pair with this bound no longer counts.
+    fn is_late(&self, pair: [Id; 2], from: ScalarOf<S>) -> bool;
+
+    /// Tests a pair with this bound, or breaks the question off.
+    fn test(&mut self, pair: [Id; 2], from: ScalarOf<S>, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>) -> ControlFlow<()>;
+}
+
 impl<'s, S: SupportMap> Pairing<'s, S, S> {
     pub(super) fn within(all: Among<'s, S>) -> Self {
         Self { a: all, b: all, same: true, work: Work::default() }
@@ -156,27 +182,54 @@ impl<'s, S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'s, S, T> {
         Self { a: all, b: other.all(), same: false, work: Work::default() }
     }
 
-    /// The indices of a pair in their order, and its bodies, if it is to be tested now, which counts as work; a break
-    /// if the question ends early. `is_late` tells of the indices in their order whether the pair no longer matters.
+    /// Tests two bodies with this bound, or the pairs of their members that are near; `beside` is the question of what
+    /// is near a body with this box, or near a half-space. A break ends the question.
     #[inline]
-    pub(super) fn asked(
+    pub(super) fn ask<Q: Question<S::Vector>>(
         &mut self,
         [i, j]: [usize; 2],
-        is_late: impl FnOnce([usize; 2]) -> bool,
-    ) -> ControlFlow<(), Option<BodyPair<'s, S, T>>> {
+        from: ScalarOf<S>,
+        beside: &impl Fn(Option<Aabb<S::Vector>>) -> Q,
+        question: &mut impl TestPair<S, T>,
+    ) -> ControlFlow<()> {
         let (i, j) = if self.same && j < i { (j, i) } else { (i, j) };
-        if is_late([i, j]) {
-            return ControlFlow::Continue(None);
+        let pair = [Id::of(i), Id::of(j)];
+        if question.is_late(pair, from) {
+            return ControlFlow::Continue(());
         }
-        let (Some(a), Some(b)) = (self.a.body(i), self.b.body(j)) else { return ControlFlow::Continue(None) };
+        let (Some(a), Some(b)) = (self.a.slot(i), self.b.slot(j)) else { return ControlFlow::Continue(()) };
         if self.a.is_pair_left_out(i, j) {
-            return ControlFlow::Continue(None);
+            return ControlFlow::Continue(());
         }
+        if let (Slot::Body(a), Slot::Body(b)) = (a, b) {
+            return self.test(pair, from, (Asked::Own(a), Asked::Own(b)), question);
+        }
+        let trees = [&self.a.scene.tree, &self.b.scene.tree];
+        let (mut nodes, limit) = (0, question.limit());
+        let mut tell = |pair, from, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>| {
+            if !question.is_late(pair, from) {
+                self.test(pair, from, (a, b), question)?;
+            }
+            ControlFlow::Continue(question.limit())
+        };
+        let next = each_pair([i, j], (a, b), trees, (from, limit), &mut nodes, beside, &mut tell);
+        self.work.nodes += nodes;
+        next.map_continue(|_| ())
+    }
+
+    #[inline]
+    fn test(
+        &mut self,
+        pair: [Id; 2],
+        from: ScalarOf<S>,
+        (a, b): (Asked<'_, '_, S>, Asked<'_, '_, T>),
+        question: &mut impl TestPair<S, T>,
+    ) -> ControlFlow<()> {
         if self.a.stops(&mut self.work) {
             return ControlFlow::Break(());
         }
         self.work.tested += 1;
-        ControlFlow::Continue(Some(([i, j], a, b)))
+        question.test(pair, from, a, b)
     }
 
     /// Adds the work of a part of the search.
@@ -192,74 +245,135 @@ impl<'s, S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'s, S, T> {
         Work { culled: self.all() - self.work.tested, ..self.work }
     }
 
-    /// The number of all pairs, without those of half-spaces alone.
+    /// The number of all pairs, without those of half-spaces alone and those within one body.
     fn all(&self) -> usize {
         let (a, b) = (self.a.scene, self.b.scene);
+        let pairs = |n: usize| n.saturating_mul(n.saturating_sub(1)) / 2;
         if self.same {
-            let bounded = a.len() - a.half_spaces.len();
-            bounded * bounded.saturating_sub(1) / 2 + bounded * a.half_spaces.len()
+            let bounded = a.members - a.half_spaces.len();
+            let within_one: usize = a.instances().map(|(_, instance)| pairs(instance.group().len())).sum();
+            pairs(bounded) - within_one + bounded.saturating_mul(a.half_spaces.len())
         } else {
-            a.len() * b.len() - a.half_spaces.len() * b.half_spaces.len()
+            a.members.saturating_mul(b.members) - a.half_spaces.len() * b.half_spaces.len()
         }
     }
 }
 
-/// The indices of two bodies, and the bodies.
-pub(super) type BodyPair<'s, S, T> = ([usize; 2], &'s Body<S>, &'s Body<T>);
+/// What is near a body with this box.
+pub(super) fn beside_box<V: Vector>(around: Option<Aabb<V>>) -> BoxDistance<V> {
+    BoxDistance::new(around.unwrap_or_else(Aabb::everything))
+}
 
-/// A running search for pairs.
+/// A running search for all pairs within a distance.
 struct Asking<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>, F, P> {
     pairing: Pairing<'s, S, T>,
-    within: ScalarOf<S>,
+    found: Found<'p, ScalarOf<S>, F, P>,
+}
+
+/// The pairs found so far.
+struct Found<'p, N, F, P> {
+    within: N,
     /// The result for two bodies, if there is any.
     tell: &'p F,
     pairs: &'p mut Vec<P>,
 }
 
-impl<S, T, F, P: OfPair> Asking<'_, '_, S, T, F, P>
+impl<S, T, F, P> TestPair<S, T> for Found<'_, ScalarOf<S>, F, P>
 where
     S: SupportMap,
     T: SupportMap<Vector = S::Vector>,
-    F: Fn([usize; 2], &Body<S>, &Body<T>) -> Option<P>,
+    F: Fn([Id; 2], Asked<'_, '_, S>, Asked<'_, '_, T>) -> Option<P>,
 {
-    /// Tests the pairs of bounded bodies whose boxes are near.
-    fn search(&mut self, search: PairSearch<'_, S::Vector>) {
-        let nodes = search.visit(|i, j| self.ask(i, j));
-        self.pairing.work.nodes += nodes;
+    fn limit(&self) -> ScalarOf<S> {
+        self.within
     }
 
-    fn ask(&mut self, i: usize, j: usize) -> ControlFlow<()> {
-        if let Some((pair, a, b)) = self.pairing.asked([i, j], |_| false)? {
-            self.pairs.extend((self.tell)(pair, a, b));
-        }
+    fn is_late(&self, _: [Id; 2], _: ScalarOf<S>) -> bool {
+        false
+    }
+
+    #[inline]
+    fn test(&mut self, pair: [Id; 2], _: ScalarOf<S>, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>) -> ControlFlow<()> {
+        self.pairs.extend((self.tell)(pair, a, b));
         ControlFlow::Continue(())
+    }
+}
+
+impl<'s, 'p, S, T, F, P: OfPair> Asking<'s, 'p, S, T, F, P>
+where
+    S: SupportMap,
+    T: SupportMap<Vector = S::Vector>,
+    F: Fn([Id; 2], Asked<'_, '_, S>, Asked<'_, '_, T>) -> Option<P>,
+{
+    fn new(pairing: Pairing<'s, S, T>, within: ScalarOf<S>, tell: &'p F, pairs: &'p mut Vec<P>) -> Self {
+        Self { pairing, found: Found { within, tell, pairs } }
+    }
+
+    /// Tests the pairs of bounded bodies whose boxes are near.
+    fn search(&mut self, search: PairSearch<'_, S::Vector>) {
+        let Self { pairing, found } = self;
+        let nodes = search.visit(|i, j| pairing.ask([i, j], Scalar::ZERO, &beside_box, found));
+        pairing.work.nodes += nodes;
     }
 
     /// Tests the bodies that are near half-spaces, sorts the pairs, and counts those that were left out.
-    fn finish(mut self) -> Work {
-        let (Pairing { a, b, same, .. }, within) = (self.pairing, self.within);
+    fn finish(self) -> Work {
+        let Self { mut pairing, mut found } = self;
+        let (Pairing { a, b, same, .. }, within) = (pairing, found.within);
         for (index, half_space) in a.half_spaces() {
-            let nodes = b.scene.tree.within(&HeightBound::new(half_space), within, |other| self.ask(index, other));
-            self.pairing.work.nodes += nodes;
+            let height = HeightBound::new(half_space);
+            let nodes = b
+                .scene
+                .tree
+                .within(&height, within, |other| pairing.ask([index, other], Scalar::ZERO, &|_| height, &mut found));
+            pairing.work.nodes += nodes;
         }
         for (index, half_space) in b.half_spaces().filter(|_| !same) {
-            let nodes = a.scene.tree.within(&HeightBound::new(half_space), within, |other| self.ask(other, index));
-            self.pairing.work.nodes += nodes;
+            let height = HeightBound::new(half_space);
+            let nodes = a
+                .scene
+                .tree
+                .within(&height, within, |other| pairing.ask([other, index], Scalar::ZERO, &|_| height, &mut found));
+            pairing.work.nodes += nodes;
         }
-        self.pairs.sort_unstable_by_key(OfPair::indices);
-        self.pairing.finish()
+        found.pairs.sort_unstable_by_key(OfPair::ids);
+        pairing.finish()
     }
+}
+
+/// Calls `tell` for each pair of members of two bodies whose boxes are no farther apart than the limit, with its bound,
+/// at least that of the bodies. The call returns the limit from then on, or breaks off.
+fn each_pair<S: SupportMap, T: SupportMap<Vector = S::Vector>, Q: Question<S::Vector>>(
+    [i, j]: [usize; 2],
+    (a, b): (&Slot<S>, &Slot<T>),
+    trees: [&Bvh<S::Vector>; 2],
+    (from, mut limit): (ScalarOf<S>, ScalarOf<S>),
+    nodes: &mut usize,
+    beside: &impl Fn(Option<Aabb<S::Vector>>) -> Q,
+    tell: &mut impl FnMut([Id; 2], ScalarOf<S>, Asked<'_, '_, S>, Asked<'_, '_, T>) -> ControlFlow<(), ScalarOf<S>>,
+) -> ControlFlow<(), ScalarOf<S>> {
+    let mut inner = 0;
+    let near_b = beside(trees[1].get(j));
+    let next = a.each_member((i, from), &near_b, limit, nodes, &mut |id_a, from, a| {
+        let around = if let Asked::Member(_, around) = a { Some(around) } else { trees[0].get(i) };
+        let near_a = beside(around);
+        limit =
+            b.each_member((j, from), &near_a, limit, &mut inner, &mut |id_b, from, b| tell([id_a, id_b], from, a, b))?;
+        ControlFlow::Continue(limit)
+    });
+    *nodes += inner;
+    next
 }
 
 /// The distance from one body to another, if it is within the limit; `None` for two half-spaces.
 fn between<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
-    [i, j]: [usize; 2],
+    [id_a, id_b]: [Id; 2],
     a: &Body<S>,
     b: &Body<T>,
     options: DistanceOptions<S::Vector>,
 ) -> Option<PairDistance<S::Vector>> {
     let distance = distance_of(a, b, options)?;
-    (distance.distance <= options.limit).then_some(PairDistance { a: i, b: j, distance })
+    (distance.distance <= options.limit).then(|| PairDistance::of([id_a, id_b], distance))
 }
 
 /// The distance from one body to another; `None` for two half-spaces.

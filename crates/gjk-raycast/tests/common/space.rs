@@ -5,7 +5,7 @@ use convex_support::{AngularVelocity, Cone, Cylinder, SupportMap, Vector, Vector
 
 use super::s;
 
-type Shape<V> = Box<dyn SupportMap<Vector = V> + Sync>;
+type Shape<V> = Box<dyn SupportMap<Vector = V> + Send + Sync>;
 
 /// The angular velocity with these coordinates; in the plane the last one.
 pub(crate) fn spin<V: Vector>(w: [f64; 3]) -> V::AngularVelocity {

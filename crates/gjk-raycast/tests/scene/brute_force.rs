@@ -50,7 +50,7 @@ pub(crate) fn distances<V: Space>(world: &World<V>, shape: &Shape<V>) -> Vec<Bod
         Body::Convex(body) => distance(shape, body, DistanceOptions::default()),
         Body::HalfSpace(half_space) => half_space.distance_from(shape),
     };
-    world.scene.iter().map(|(body, other)| BodyDistance { body, distance: from(other) }).collect()
+    world.scene.iter().map(|(body, other)| BodyDistance { body, member: None, distance: from(other) }).collect()
 }
 
 /// All pairs of bodies, half-spaces apart.
@@ -61,7 +61,7 @@ pub(crate) fn pairs<V: Space>(world: &World<V>, within: V::Scalar) -> Vec<PairDi
             let (Some(first), Some(second)) = (first.convex(), second.convex()) else { continue };
             let distance: Distance<V> = distance(first, second, DistanceOptions::default());
             if distance.distance <= within {
-                found.push(PairDistance { a, b, distance });
+                found.push(PairDistance { a, b, member_a: None, member_b: None, distance });
             }
         }
     }
@@ -98,7 +98,7 @@ pub(crate) fn contacts<V: Space>(world: &World<V>, within: V::Scalar) -> Vec<Pai
                 (Body::HalfSpace(first), Body::Convex(second)) => first.contact(second, within).map(Contact::reversed),
                 (Body::HalfSpace(_), Body::HalfSpace(_)) => None,
             };
-            found.extend(contact.map(|contact| PairContact { a, b, contact }));
+            found.extend(contact.map(|contact| PairContact { a, b, member_a: None, member_b: None, contact }));
         }
     }
     found
@@ -106,7 +106,11 @@ pub(crate) fn contacts<V: Space>(world: &World<V>, within: V::Scalar) -> Vec<Pai
 
 pub(crate) fn contacts_of<V: Space>(world: &World<V>, shape: &Shape<V>, within: V::Scalar) -> Vec<BodyContact<V>> {
     let with = |body: &Body<Shape<V>>| body.contact(shape, within, SignedDistanceOptions::default());
-    world.scene.iter().filter_map(|(body, other)| Some(BodyContact { body, contact: with(other)? })).collect()
+    world
+        .scene
+        .iter()
+        .filter_map(|(body, other)| Some(BodyContact { body, member: None, contact: with(other)? }))
+        .collect()
 }
 
 /// The pairs without half-spaces.

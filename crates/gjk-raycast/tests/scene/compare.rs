@@ -275,7 +275,7 @@ struct Single<H, S: Scalar> {
 impl<H: Copy, S: Scalar> Single<H, S> {
     fn new<V>(body: usize, outcome: Outcome<H, V>, [lower, upper]: [S; 2], status: Status, of: fn(&H) -> S) -> Self {
         let is_undecided = matches!(outcome, Outcome::Undecided);
-        let hit = outcome.hit().map(|hit| (of(&hit), BodyHit { body, hit, lower, upper, status }));
+        let hit = outcome.hit().map(|hit| (of(&hit), BodyHit { body, member: None, hit, lower, upper, status }));
         Self { body, hit, is_undecided, lower }
     }
 }

@@ -4,6 +4,7 @@
 
 mod brute_force;
 mod compare;
+mod instances;
 mod numbers;
 mod situations;
 mod worlds;

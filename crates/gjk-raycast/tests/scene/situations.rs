@@ -351,8 +351,13 @@ fn contacts_of_all_pairs_follow_the_last_ones_without_seams() {
     let (ground, slab) = (HalfSpace::new(DVec3::Y, 0.0).unwrap(), block(DVec3::splat(1.0), DVec3::NEG_Y));
     let ids = |contact: &Contact<DVec3>| contact.points().iter().map(|p| p.feature_a).collect::<Vec<_>>();
     let mut resting = ground.contact(&disc(0.0), 0.0).unwrap();
-    let mut found =
-        vec![PairContact { a: 0, b: 1, contact: contact(&disc(0.0), &slab, 0.0, Default::default()).unwrap() }];
+    let mut found = vec![PairContact {
+        a: 0,
+        b: 1,
+        member_a: None,
+        member_b: None,
+        contact: contact(&disc(0.0), &slab, 0.0, Default::default()).unwrap(),
+    }];
     let first = [ids(&resting), ids(&found[0].contact)];
     for step in 1..20 {
         let angle = 0.01 * f64::from(step);

@@ -3,12 +3,12 @@
 use convex_support::{
     Ball, Capsule, Cuboid, Ellipsoid, Point, Polytope, Posed, Rotation, Rounded, Scalar, Segment, SupportMap, Triangle,
 };
-use gjk_raycast::{HalfSpace, Scene};
+use gjk_raycast::{HalfSpace, Pose, Scene};
 
 use super::numbers::Numbers;
 use crate::common::space::Space;
 
-pub(crate) type Shape<V> = Box<dyn SupportMap<Vector = V> + Sync>;
+pub(crate) type Shape<V> = Box<dyn SupportMap<Vector = V> + Send + Sync>;
 
 /// A shape of any kind about the origin.
 fn shape<V: Space>(numbers: &mut Numbers, size: f64) -> Shape<V> {
@@ -34,8 +34,8 @@ fn shape<V: Space>(numbers: &mut Numbers, size: f64) -> Shape<V> {
     made.unwrap_or_else(|| Box::new(Ball::new(length).expect("a ball")))
 }
 
-/// A shape in a place of a world.
-pub(crate) fn body<V: Space>(numbers: &mut Numbers, kind: usize, index: usize) -> Shape<V> {
+/// The size of a shape in a world, and its pose.
+pub(crate) fn place<V: Space>(numbers: &mut Numbers, kind: usize, index: usize) -> (f64, Pose<V>) {
     // The smallest numbers whose products still have digits, by a factor.
     let tiny = if V::Scalar::EPSILON.as_f64() > 1e-10 { 1e-30 } else { 1e-250 };
     let (size, reach, far) = match kind {
@@ -48,17 +48,23 @@ pub(crate) fn body<V: Space>(numbers: &mut Numbers, kind: usize, index: usize) -
         5 => (1.0, 1.0, 0.0),
         _ => (0.05, 2.0, 0.0),
     };
-    let turn = V::Rotation::from_xyzw([0, 1, 2, 3].map(|i| {
+    let rotation = V::Rotation::from_xyzw([0, 1, 2, 3].map(|i| {
         let turned = numbers.below(3) > 0;
         V::Scalar::from_f64(if turned { numbers.signed() } else { f64::from(i == 3) })
     }));
-    let place = numbers.vector::<V>(reach) + V::splat(V::Scalar::from_f64(far));
+    let translation = numbers.vector::<V>(reach) + V::splat(V::Scalar::from_f64(far));
+    (size, Pose { rotation, translation })
+}
+
+/// A shape in a place of a world.
+pub(crate) fn body<V: Space>(numbers: &mut Numbers, kind: usize, index: usize) -> Shape<V> {
+    let (size, Pose { rotation, translation }) = place(numbers, kind, index);
     let shape = shape(numbers, size);
-    match Posed::new(&*shape, turn, place) {
+    match Posed::new(&*shape, rotation, translation) {
         Ok(_) => {}
         Err(_) => return shape,
     }
-    Box::new(Posed::new(shape, turn, place).expect("checked"))
+    Box::new(Posed::new(shape, rotation, translation).expect("checked"))
 }
 
 /// How many kinds of worlds there are.
