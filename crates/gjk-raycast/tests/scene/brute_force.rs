@@ -79,7 +79,7 @@ pub(crate) fn distances_between<V: Space>(first: &Scene<Shape<V>>, second: &Scen
                 (Body::HalfSpace(one), Body::Convex(other)) => one.distance_from(other).reversed(),
                 (Body::HalfSpace(_), Body::HalfSpace(_)) => continue,
             };
-            found.push(PairDistance { a, b, distance });
+            found.push(PairDistance { a, b, member_a: None, member_b: None, distance });
         }
     }
     found
