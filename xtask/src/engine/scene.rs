@@ -1,9 +1,9 @@
 //! `scene`.
 
-use convex_support::{Scalar, Vector};
+use convex_support::Vector;
 use gjk_raycast::{
     BodyHit, DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, PairContact, Ray, RayCastOptions, RayHit,
-    RigidMotion, SceneCast, SignedDistanceOptions,
+    RigidMotion, SceneAnyWithin, SceneCast, ScenePair, SignedDistanceOptions,
 };
 
 use super::cast::{Limits, RaySpec, problem};
@@ -31,10 +31,23 @@ enum Spec {
     MotionCast { shape: Shape, motion: RigidSpec, limits: Limits },
     PairsWithin(f64),
     ContactsWithin(f64),
+    NearestBetween { others: Vec<Element>, within: Option<f64> },
+    LeastPair { within: Option<f64> },
+    AnyWithin { within: f64, of: Option<Shape> },
 }
 
 /// The kinds of questions.
-const KINDS: Names = &["ray", "nearest", "linear_cast", "motion_cast", "pairs_within", "contacts_within"];
+const KINDS: Names = &[
+    "ray",
+    "nearest",
+    "linear_cast",
+    "motion_cast",
+    "pairs_within",
+    "contacts_within",
+    "nearest_between",
+    "least_pair",
+    "any_within",
+];
 
 impl Query for Scene {
     const FIELDS: Names = &["bodies", "asks"];
@@ -58,18 +71,35 @@ impl Query for Scene {
 
 impl Spec {
     fn read(written: Written<'_>) -> Result<Self, Problem> {
-        let fields = written.fields(KINDS, &["within"])?;
+        let fields = written.fields(KINDS, &["within", "of"])?;
         let kind = fields.only_one_of(KINDS)?;
-        if kind == "nearest" {
-            // The shape is the field itself, and its limit stands beside it.
-            let within = fields.not_negative("within")?;
-            return Ok(Self::Nearest { shape: Shape::read(fields.within(kind)?)?, within });
-        }
-        let fields = fields.only(KINDS, &[])?;
+        // What the question is about is the field itself, and this stands beside it.
+        let beside: Names = match kind {
+            "nearest" | "nearest_between" | "least_pair" => &["within"],
+            "any_within" => &["of"],
+            _ => &[],
+        };
+        let fields = fields.only(KINDS, beside)?;
         let distance = || Ok(fields.not_negative(kind)?.unwrap_or(0.0));
         let shape = |of: &Fields<'_>| Shape::read(of.within("shape")?);
         let cast = |own: Names| fields.within(kind)?.fields(&["max_time", "target_distance", "start_in_contact"], own);
         Ok(match kind {
+            "nearest" => {
+                Self::Nearest { shape: Shape::read(fields.within(kind)?)?, within: fields.not_negative("within")? }
+            }
+            "nearest_between" => {
+                let others = fields.each(kind)?.into_iter().map(Element::read).collect::<Result<_, _>>()?;
+                Self::NearestBetween { others, within: fields.not_negative("within")? }
+            }
+            "least_pair" if fields.flag(kind)? => Self::LeastPair { within: fields.not_negative("within")? },
+            "least_pair" => {
+                let message = format!("{} is false, but an ask is made by true", fields.at(kind));
+                return Err(Problem::new(Kind::Parse, message));
+            }
+            "any_within" => {
+                let of = if fields.has("of") { Some(Shape::read(fields.within("of")?)?) } else { None };
+                Self::AnyWithin { within: distance()?, of }
+            }
             "ray" => {
                 let of = fields.within(kind)?.fields(&["source", "direction", "min_lambda", "max_lambda"], &["all"])?;
                 Self::Ray { ray: RaySpec::read(&of)?, all: of.flag("all")? }
@@ -111,6 +141,21 @@ impl Spec {
             }
             Self::PairsWithin(within) => One::PairsWithin(scalar::<V>(*within), near),
             Self::ContactsWithin(within) => One::ContactsWithin(scalar::<V>(*within), signed_distance::options(how)?),
+            Self::NearestBetween { others, within } => {
+                let list = format!("{place}.nearest_between");
+                let build = |(i, body): (usize, &Element)| body.build(&format!("{list}[{i}]"), how.meshes);
+                let others = others.iter().enumerate().map(build).collect::<Result<Vec<_>, _>>()?;
+                near.limit = within.map_or(near.limit, scalar::<V>);
+                One::NearestBetween(scene_of(others).map_err(|why| refused(why, &list))?, near)
+            }
+            Self::LeastPair { within } => {
+                near.limit = within.map_or(near.limit, scalar::<V>);
+                One::LeastPair(near)
+            }
+            Self::AnyWithin { within, of } => {
+                let of = of.as_ref().map(|shape| solid(shape, "of")).transpose()?;
+                One::AnyWithin(of, scalar::<V>(*within), near)
+            }
         })
     }
 }
@@ -130,6 +175,9 @@ enum One<V: Vector> {
     MotionCast(Solid<V>, RigidMotion<V>, MotionCastOptions<V>),
     PairsWithin(V::Scalar, DistanceOptions<V>),
     ContactsWithin(V::Scalar, SignedDistanceOptions<V>),
+    NearestBetween(gjk_raycast::Scene<Solid<V>>, DistanceOptions<V>),
+    LeastPair(DistanceOptions<V>),
+    AnyWithin(Option<Solid<V>>, V::Scalar, DistanceOptions<V>),
 }
 
 impl<V: Space> Question for Asked<V> {
@@ -204,6 +252,25 @@ impl<V: Space> One<V> {
                 let _ = scene.all().contacts_within(*within, *options, &mut contacts);
                 format!("{contacts:?}")
             }
+            Self::NearestBetween(others, options) => {
+                #[cfg(feature = "parallel")]
+                let nearest = scene.all().par_nearest_between(others, *options);
+                #[cfg(not(feature = "parallel"))]
+                let nearest = scene.all().nearest_between(others, *options);
+                let any = scene.all().any_pair_between(others, nearest.lower * scalar::<V>(2.0), *options);
+                format!("{:?} {:?} {:?} {:?}", nearest.nearest, nearest.lower, any.any, any.undecided)
+            }
+            Self::LeastPair(options) => {
+                #[cfg(feature = "parallel")]
+                let nearest = scene.all().par_least_pair(*options);
+                #[cfg(not(feature = "parallel"))]
+                let nearest = scene.all().least_pair(*options);
+                format!("{:?} {:?}", nearest.nearest, nearest.lower)
+            }
+            Self::AnyWithin(of, within, options) => match of {
+                Some(shape) => format!("{:?}", scene.all().any_within(shape, *within, *options)),
+                None => format!("{:?}", scene.all().any_pair_within(*within, *options)),
+            },
         }
     }
 
@@ -226,6 +293,18 @@ impl<V: Space> One<V> {
             Self::Nearest(shape, options) => nearest(scene, shape, *options),
             Self::PairsWithin(within, options) => pairs(scene, *within, *options),
             Self::ContactsWithin(within, options) => contacts(scene, *within, *options),
+            Self::NearestBetween(others, options) => {
+                let names = [["body", "other"], ["member", "other_member"]];
+                nearest_pair([scene, others], names, scene.all().nearest_between(others, *options))
+            }
+            Self::LeastPair(options) => {
+                let names = [["a", "b"], ["member_a", "member_b"]];
+                nearest_pair([scene, scene], names, scene.all().least_pair(*options))
+            }
+            Self::AnyWithin(Some(shape), within, options) => {
+                Ok(any_within(scene.all().any_within(shape, *within, *options)))
+            }
+            Self::AnyWithin(None, within, options) => Ok(any_within(scene.all().any_pair_within(*within, *options))),
         }
     }
 }
@@ -310,6 +389,32 @@ fn nearest<V: Space>(
         .with("distance", Field::number(found.distance.distance))
         .with_finite("lower", found.distance.lower)
         .with_finite("upper", found.distance.upper))
+}
+
+/// The nearest pair, whose indices are called by the first names and whose members by the second; nulls where none is
+/// within the limit.
+fn nearest_pair<V: Space>(
+    [scene_of_a, scene_of_b]: [&gjk_raycast::Scene<Solid<V>>; 2],
+    [[a, b], [member_a, member_b]]: [[&'static str; 2]; 2],
+    found: ScenePair<V>,
+) -> Result<Answer, Problem> {
+    let Some(found) = found.nearest else {
+        return Ok(Answer::default().with(a, Field::Null).with(b, Field::Null).with("distance", Field::Null));
+    };
+    certain(&found.distance)?;
+    let answer = Answer::default().with(a, Field::Count(found.a)).with(b, Field::Count(found.b));
+    let answer = with_member(scene_of_a, answer, member_a, (found.a, found.member_a));
+    Ok(with_member(scene_of_b, answer, member_b, (found.b, found.member_b))
+        .with("distance", Field::number(found.distance.distance))
+        .with_finite("lower", found.distance.lower)
+        .with_finite("upper", found.distance.upper))
+}
+
+/// Whether any is within a distance, by the distances as they are answered. Rounding alone may leave it open whether
+/// one that is exactly so far is within.
+fn any_within<I>(found: SceneAnyWithin<I>) -> Answer {
+    let certain = found.is_certain();
+    Answer::default().with("any", Field::Flag(found.any)).with("certain", Field::Flag(certain))
 }
 
 /// The pairs no farther apart than `within`, each once, however many of their members are.
