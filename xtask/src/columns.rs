@@ -97,7 +97,7 @@ impl Bound<'_> {
             let cell = &cells[column];
             if *is_quoted {
                 let text = serde_json::to_string(cell).unwrap_or_default();
-                query.extend_from_slice(text[1..text.len() - 1].as_bytes());
+                query.extend_from_slice(&text.as_bytes()[1..text.len() - 1]);
             } else {
                 query.extend_from_slice(number(cell.trim()).map_err(|why| wrong(why).at(name))?.as_bytes());
             }

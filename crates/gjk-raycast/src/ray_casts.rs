@@ -102,9 +102,9 @@ impl<V: Vector> From<RayCast<V>> for RayEntry<V> {
 ///
 /// Each answer is that of [`ray_cast`] to the last bit, whatever its neighbours are: the same λ, bounds and normal.
 /// Balls, boxes, capsules and hulls with facets, also posed, are tested against several rays at a time. Rays that are
-/// then in doubt are cast alone, and so are rays against other shapes. For a shape without a [closed
-/// form](CrossedByLine) there is [`ray_casts`](crate::ray_casts). With the feature `simd`, the widest vector
-/// instructions of the processor are chosen at run time.
+/// then in doubt are cast alone. So are rays against other shapes, such as sums, each from anew:
+/// [`ray_casts`](crate::ray_casts) takes less time for these, as it starts each ray from the last. With the feature
+/// `simd`, the widest vector instructions of the processor are chosen at run time.
 ///
 /// ```
 /// use convex_support::{Ball, glam::DVec3};
