@@ -42,6 +42,7 @@
 //! About a robot:
 //! - *Is its path free, at every time, and what does it meet first?* [`Linkage::path`].
 //! - *The same along a spline?* [`Linkage::path_along`], with a [`JointTrajectory`] that you implement.
+//! - *How near does it come to anything on the way, when, and with which link?* [`Linkage::path_clearance`].
 //! - *Do two of its links ever meet, at any positions of the joints?* [`Linkage::joint_box`].
 //!
 //! About a ray and a shape:
@@ -201,7 +202,7 @@ pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{LinearCast, LinearCastOptions, Motion, linear_cast, linear_cast_with};
 pub use linkage::{
     FreeBox, FreeInterval, Joint, JointBounds, JointBox, JointBoxOutcome, JointKind, JointState, JointTrajectory, Link,
-    Linkage, LinkageError, Met, Path, PathContact, PathWorkspace,
+    Linkage, LinkageError, Met, NearestOnPath, Path, PathClearance, PathContact, PathWorkspace,
 };
 pub use motion::{
     ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate,

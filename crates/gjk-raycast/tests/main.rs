@@ -44,6 +44,7 @@ mod motion_laws;
 mod moving_boxes;
 mod options;
 mod paper;
+mod path_clearance;
 mod peer_manifolds;
 mod ray_entries;
 mod regressions_distance;

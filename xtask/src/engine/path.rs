@@ -4,7 +4,10 @@ use convex_support::glam::{DVec2, DVec3};
 use convex_support::{Scalar as _, Vector};
 #[cfg(not(target_family = "wasm"))]
 use cpu_time::ThreadTime;
-use gjk_raycast::{FreeInterval, Linkage, Met, MotionCastOptions, PathContact, PathWorkspace, Scene};
+use gjk_raycast::{
+    FreeInterval, Linkage, Met, MotionCastOptions, MotionClearanceOptions, NearestOnPath, PathClearance, PathContact,
+    PathWorkspace, Scene,
+};
 #[cfg(target_family = "wasm")]
 use std::time::Instant as ThreadTime;
 
@@ -28,10 +31,11 @@ pub(super) struct Path {
     obstacles: Vec<Body>,
     pairs: Vec<[usize; 2]>,
     target_distance: f64,
+    clearance: bool,
 }
 
 impl Query for Path {
-    const FIELDS: Names = &["joints", "links", "waypoints", "obstacles", "self", "target_distance"];
+    const FIELDS: Names = &["joints", "links", "waypoints", "obstacles", "self", "target_distance", "clearance"];
 
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
         Ok(Self {
@@ -40,6 +44,7 @@ impl Query for Path {
             obstacles: fields.each("obstacles")?.into_iter().map(Body::read).collect::<Result<_, _>>()?,
             pairs: fields.maybe("self")?.unwrap_or_default(),
             target_distance: fields.not_negative("target_distance")?.unwrap_or(0.0),
+            clearance: fields.flag("clearance")?,
         })
     }
 
@@ -56,12 +61,15 @@ impl Path {
         let obstacles = self.obstacles.iter().enumerate().map(build).collect::<Result<Vec<_>, _>>()?;
         let mut options = MotionCastOptions::new().with_target_distance(scalar::<V>(self.target_distance));
         options.tolerance = how.tolerance::<V>()?.unwrap_or(options.tolerance);
+        let mut of_clearance = MotionClearanceOptions::new();
+        of_clearance.tolerance = how.tolerance::<V>()?.unwrap_or(of_clearance.tolerance);
         let pairs = self.pairs.iter().copied();
         Ok(Way {
             robot: self.robot.build(how.meshes)?.with_pairs(pairs).map_err(problem)?,
             scene: scene_of(obstacles).map_err(|why| refused(why, "obstacles"))?,
             waypoints: self.waypoints.iter().map(|row| row.iter().map(|&value| scalar::<V>(value)).collect()).collect(),
             options,
+            clearance: self.clearance.then_some(of_clearance),
         })
     }
 }
@@ -71,13 +79,18 @@ struct Way<V: Vector> {
     scene: Scene<Solid<V>>,
     waypoints: Vec<Vec<V::Scalar>>,
     options: MotionCastOptions<V>,
+    /// The options of the clearance, if it is asked for.
+    clearance: Option<MotionClearanceOptions<V>>,
 }
 
 impl<V: Space> Question for Way<V> {
-    type Solution = gjk_raycast::Path<V>;
+    type Solution = (gjk_raycast::Path<V>, Option<PathClearance<V>>);
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
-        self.robot.path(&self.waypoints, &self.scene, self.options, &mut PathWorkspace::new()).map_err(problem)
+        let mut workspace = PathWorkspace::new();
+        let path = self.robot.path(&self.waypoints, &self.scene, self.options, &mut workspace).map_err(problem)?;
+        let ask = |options| self.robot.path_clearance(&self.waypoints, &self.scene, options, &mut workspace);
+        Ok((path, self.clearance.map(ask).transpose().map_err(problem)?))
     }
 
     /// It is watched, so that brackets are those of what is shown.
@@ -96,7 +109,7 @@ impl<V: Space> Question for Way<V> {
         let path = self.robot.path_with(&self.waypoints, &self.scene, self.options, &mut workspace, show);
         let path = path.map_err(problem)?;
         let met = path.contact().and_then(|(contact, _)| self.met(&contact)).unwrap_or_default();
-        Ok((path, Some(met.with("free", Field::Answers(free)))))
+        Ok(((path, self.solve()?.1), Some(met.with("free", Field::Answers(free)))))
     }
 
     /// The same path, not watched.
@@ -104,7 +117,7 @@ impl<V: Space> Question for Way<V> {
         format!("{:?}", self.solve())
     }
 
-    fn answer(&self, path: Self::Solution) -> Result<Answer, Problem> {
+    fn answer(&self, (path, clearance): Self::Solution) -> Result<Answer, Problem> {
         let answer = |free| Answer::default().with("free", Field::Flag(free));
         let answer = match (path.contact(), path.first) {
             (Some((contact, hit)), _) => {
@@ -131,8 +144,30 @@ impl<V: Space> Question for Way<V> {
             }
             (None, None) => answer(true).with("certain", Field::Flag(true)),
         };
-        Ok(answer.with("casts", Field::Count(path.casts)))
+        let answer = answer.with("casts", Field::Count(path.casts));
+        let nearest = clearance.and_then(|clearance| clearance.nearest);
+        Ok(match nearest {
+            Some(nearest) => answer.with("clearance", Field::Answer(of_clearance(nearest))),
+            None => answer,
+        })
     }
+}
+
+/// The least distance along a path.
+fn of_clearance<V: Space>(NearestOnPath { edge, link, body, met, least }: NearestOnPath<V>) -> Answer {
+    let answer = Answer::default()
+        .with("distance", Field::number(least.distance))
+        .with("edge", Field::Count(edge))
+        .with("time", Field::number(least.time))
+        .with("link", Field::Count(link))
+        .with("body", Field::Count(body));
+    of_what(answer, met)
+        .with("point_a", Field::vector(least.point_a))
+        .with("point_b", Field::vector(least.point_b))
+        .with("normal", Field::maybe_vector(least.normal))
+        .with_finite("lower", least.lower)
+        .with_finite("upper", least.upper)
+        .with("status", status(least.status))
 }
 
 impl<V: Space> Way<V> {
@@ -214,7 +249,7 @@ pub fn picture(object: &Object, meshes: &Meshes) -> Result<Option<(String, bool)
         return Ok(None);
     }
     let way = query.way::<DVec3>(&How { precision: Precision::F64, tol: None, method: None, meshes })?;
-    let contact = way.solve()?.contact();
+    let contact = way.solve()?.0.contact();
     let svg = path_picture::svg(&way.robot, &way.scene, &way.waypoints, contact);
     Ok(svg.map(|svg| (svg, contact.is_some())))
 }

@@ -125,8 +125,28 @@ pub fn judge(case: &Object, answer: &Object) -> Verdict {
     {
         judge_scalar(case, answer, name, due, &mut verdict);
     }
+    if let Some(due) = expect.get("clearance").and_then(Value::as_object) {
+        judge_clearance(case, due, answer.get("clearance").and_then(Value::as_object), &mut verdict);
+    }
     judge_fields(case, expect, answer, scalar == Some("log_det"), &mut verdict);
     verdict
+}
+
+/// Compares the least distance along a path, and which bodies have it.
+fn judge_clearance(case: &Object, due: &Object, answer: Option<&Object>, verdict: &mut Verdict) {
+    let Some(answer) = answer else { return verdict.wrong.push("clearance missing".to_owned()) };
+    for name in ["edge", "link", "obstacle", "other_link"] {
+        if let Some(due) = due.get(name)
+            && answer.get(name) != Some(due)
+        {
+            verdict.wrong.push(format!("clearance.{name} {}, true {due}", text(answer.get(name))));
+        }
+    }
+    if let Some(distance) = due.get("distance")
+        && verdict.wrong.is_empty()
+    {
+        judge_scalar(case, answer, "distance", distance, verdict);
+    }
 }
 
 /// How the reason begins that an answer is wrong whose bracket is wide although it has converged.

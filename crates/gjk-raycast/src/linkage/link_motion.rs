@@ -90,6 +90,14 @@ pub(super) struct PathEdge<'p, S> {
     pub(super) to: &'p [S],
 }
 
+impl<'p, S: Scalar> PathEdge<'p, S> {
+    /// The edge from a waypoint to the next one; from the last one it stays there.
+    pub(super) fn between<W: AsRef<[S]>>(waypoints: &'p [W], index: usize) -> Self {
+        let [from, to] = [index, (index + 1).min(waypoints.len() - 1)].map(|waypoint| waypoints[waypoint].as_ref());
+        Self { from, to }
+    }
+}
+
 impl<S: Scalar> JointTrajectory for PathEdge<'_, S> {
     type Scalar = S;
 

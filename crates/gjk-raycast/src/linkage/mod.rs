@@ -8,6 +8,7 @@ mod joint_trajectory;
 mod link_motion;
 mod path;
 mod path_answer;
+mod path_clearance;
 mod robot;
 mod sweep;
 
@@ -15,6 +16,6 @@ pub use error::LinkageError;
 pub use joint::{Joint, JointKind, Link};
 pub use joint_box::{JointBox, JointBoxOutcome};
 pub use joint_trajectory::{JointBounds, JointState, JointTrajectory};
-pub use path_answer::{FreeBox, FreeInterval, Met, Path, PathContact};
+pub use path_answer::{FreeBox, FreeInterval, Met, NearestOnPath, Path, PathClearance, PathContact};
 pub use robot::Linkage;
 pub use sweep::PathWorkspace;

@@ -97,6 +97,15 @@ impl<S: SupportMap> Linkage<S> {
         options: MotionCastOptions<S::Vector>,
         workspace: &mut PathWorkspace<S::Vector>,
     ) -> Result<Path<S::Vector>, LinkageError> {
+        self.check_edges(edges)?;
+        self.watched_path(edges.len(), |index| &edges[index], scene, checked(options)?, workspace, None)
+    }
+
+    /// The error of edges whose values or bounds are invalid.
+    pub(super) fn check_edges<T: JointTrajectory<Scalar = ScalarOf<S>>>(
+        &self,
+        edges: &[T],
+    ) -> Result<(), LinkageError> {
         for (edge, trajectory) in edges.iter().enumerate() {
             for value in 0..self.values() {
                 if !trajectory.bounds(value).are_valid() {
@@ -108,7 +117,15 @@ impl<S: SupportMap> Linkage<S> {
                 }
             }
         }
-        self.watched_path(edges.len(), |index| &edges[index], scene, checked(options)?, workspace, None)
+        Ok(())
+    }
+
+    /// The index of the last waypoint, if there is one and all are valid.
+    pub(super) fn check_waypoints<W: AsRef<[ScalarOf<S>]>>(&self, waypoints: &[W]) -> Result<usize, LinkageError> {
+        for (index, waypoint) in waypoints.iter().enumerate() {
+            self.check(index, waypoint.as_ref())?;
+        }
+        waypoints.len().checked_sub(1).ok_or(LinkageError::EmptyPath)
     }
 
     /// [`path`](Self::path) with an observer that sees its proof, bodies and intervals in no particular order. For a
@@ -155,17 +172,11 @@ impl<S: SupportMap> Linkage<S> {
         observer: Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<Path<S::Vector>, LinkageError> {
         let mut options = checked(options)?;
-        for (index, waypoint) in waypoints.iter().enumerate() {
-            self.check(index, waypoint.as_ref())?;
-        }
-        let last = waypoints.len().checked_sub(1).ok_or(LinkageError::EmptyPath)?;
+        let last = self.check_waypoints(waypoints)?;
         if last == 0 {
             options.max_time = Scalar::ZERO;
         }
-        let edge = |index: usize| {
-            let [from, to] = [index, last.min(index + 1)].map(|waypoint| waypoints[waypoint].as_ref());
-            PathEdge { from, to }
-        };
+        let edge = |index: usize| PathEdge::between(waypoints, index);
         self.watched_path(last.max(1), edge, scene, options, workspace, observer)
     }
 
@@ -180,8 +191,7 @@ impl<S: SupportMap> Linkage<S> {
     ) -> Result<Path<S::Vector>, LinkageError> {
         // A contact at the beginning of a part of an edge is a contact, whatever was before.
         let options = MotionCastOptions { start_in_contact: StartInContact::Report, ..options };
-        workspace.half_spaces.clear();
-        workspace.half_spaces.extend(scene.all().half_spaces().map(|(index, half_space)| (index, half_space.plane())));
+        workspace.put_half_spaces(scene);
         let (mut parts, mut casts, mut open) = (0, 0, None);
         // If an observer is to see the proof, everything is cast.
         let target = if observer.is_some() { Float::infinity() } else { options.target_distance };
@@ -194,7 +204,7 @@ impl<S: SupportMap> Linkage<S> {
             let mut first: Option<PathContact<S::Vector>> = None;
             let (skeleton, tree, space) = (&self.skeleton, scene.tree(), &mut *workspace);
             let mut sweep = Sweep { skeleton, tree, edge, target, space, end: duration, parts: 0 };
-            sweep.run(&mut |near, motion| {
+            sweep.run::<RayCastError>(&mut |near, motion, _| {
                 casts += 1;
                 let options = options.with_max_time(duration);
                 let next = if let Some(base) = self.skeleton.views[near.view].base {

@@ -3,7 +3,7 @@
 
 use convex_support::{Scalar as _, Vector};
 
-use crate::{Impact, MotionCast, MotionIterate, Outcome};
+use crate::{Impact, MotionCast, MotionClearance, MotionIterate, Outcome};
 
 /// The answer of [`Linkage::path`](crate::Linkage::path).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +34,41 @@ pub struct PathContact<V: Vector> {
     /// another body, at the upper one. An upper bound of more than 1 means that the contact at the end of this edge was
     /// proved only in the next edge, that much later.
     pub cast: MotionCast<V>,
+}
+
+/// The answer of [`Linkage::path_clearance`](crate::Linkage::path_clearance).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct PathClearance<V: Vector> {
+    /// No body of a link comes nearer to another body than this, at any time of the path up to a first contact. It is
+    /// infinite if there is nothing to come near to.
+    pub lower: V::Scalar,
+    /// What comes nearest; `None` if there is nothing to come near to.
+    pub nearest: Option<NearestOnPath<V>>,
+    /// The number of parts of edges at whose middle the joints were placed, to find near bodies.
+    pub parts: usize,
+    /// The number of [least distances](crate::motion_clearance()) of a body of a link from another that were asked for.
+    pub casts: usize,
+}
+
+/// Two bodies that come nearest to one another along a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestOnPath<V: Vector> {
+    /// The edge, counted from 0.
+    pub edge: usize,
+    /// The link.
+    pub link: usize,
+    /// The body of the link, which is `a`.
+    pub body: usize,
+    /// The body that it comes near to, which is `b`.
+    pub met: Met,
+    /// Their least distance, with its time on the edge, from 0 to 1, and the closest points in the world. The lower
+    /// bound is that of all bodies.
+    pub least: MotionClearance<V>,
+}
+
+impl<V: Vector> PathClearance<V> {
+    pub(super) const NOTHING: Self = Self { lower: V::Scalar::ZERO, nearest: None, parts: 0, casts: 0 };
 }
 
 /// The body that a link meets.

@@ -9,7 +9,7 @@
 use alloc::vec::Vec;
 use core::ops::{ControlFlow, Range};
 
-use convex_support::{Aabb, BoundingSphere, BoxDistance, Bvh, Scalar, Vector};
+use convex_support::{Aabb, BoundingSphere, BoxDistance, Bvh, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::frame::{LinkFrame, epsilons};
@@ -17,7 +17,7 @@ use super::joint::Moving;
 use super::joint_trajectory::JointTrajectory;
 use super::link_motion::LinkMotion;
 use super::robot::{LinkView, Skeleton};
-use crate::RayCastError;
+use crate::Scene;
 use crate::half_space::Plane;
 use crate::motion::Bounds;
 
@@ -60,11 +60,28 @@ pub struct PathWorkspace<V: Vector> {
 }
 
 impl<V: Vector> PathWorkspace<V> {
+    /// Keeps the half-spaces of a scene.
+    pub(super) fn put_half_spaces<O: SupportMap<Vector = V>>(&mut self, scene: &Scene<O>) {
+        self.half_spaces.clear();
+        self.half_spaces.extend(scene.all().half_spaces().map(|(index, half_space)| (index, half_space.plane())));
+    }
+
     /// An empty one.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
+}
+
+/// What is shown: two bodies, the motion of the first from the time on when they begin to be near, and the target.
+pub(super) trait Shows<'s, V: Vector, E, R>:
+    FnMut(&Near<V::Scalar>, LinkMotion<'s, V, E>, &mut V::Scalar) -> Result<V::Scalar, R>
+{
+}
+
+impl<'s, V: Vector, E, R, F> Shows<'s, V, E, R> for F where
+    F: FnMut(&Near<V::Scalar>, LinkMotion<'s, V, E>, &mut V::Scalar) -> Result<V::Scalar, R>
+{
 }
 
 /// The search for what comes near along an edge.
@@ -94,12 +111,9 @@ struct SweptBall<V: Vector> {
 
 impl<'s, V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> Sweep<'s, V, E> {
     /// Calls `show` for each two bodies that may come near one another until the end. They come in the order of the
-    /// times when they begin to be near, within each quarter of the edge. The call returns a time after which no
-    /// contact can be the first, with which the search ends.
-    pub(super) fn run(
-        &mut self,
-        show: &mut impl FnMut(&Near<V::Scalar>, LinkMotion<'s, V, E>) -> Result<V::Scalar, RayCastError>,
-    ) -> Result<(), RayCastError> {
+    /// times when they begin to be near, within each quarter of the edge. The call may lower the target, and returns a
+    /// time after which no contact can be the first, with which the search ends.
+    pub(super) fn run<R>(&mut self, show: &mut impl Shows<'s, V, E, R>) -> Result<(), R> {
         let (space, views) = (&mut *self.space, self.skeleton.views.len());
         space.near.clear();
         space.views.clear();
@@ -112,13 +126,13 @@ impl<'s, V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> Sweep<'s, V, 
     }
 
     /// Looks at a part of the edge, with the views that are not known to be free throughout it.
-    fn visit(
+    fn visit<R>(
         &mut self,
         times @ [from, to]: [V::Scalar; 2],
         depth: u32,
         views: Range<usize>,
-        show: &mut impl FnMut(&Near<V::Scalar>, LinkMotion<'s, V, E>) -> Result<V::Scalar, RayCastError>,
-    ) -> Result<(), RayCastError> {
+        show: &mut impl Shows<'s, V, E, R>,
+    ) -> Result<(), R> {
         if from > self.end {
             return Ok(());
         }
@@ -147,7 +161,8 @@ impl<'s, V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> Sweep<'s, V, 
                 if near.from <= self.end {
                     let cut = Near { to: near.to.min(self.end), ..near };
                     let (route, bounds) = (&self.skeleton.views[near.view].route, self.space.bounds[near.view]);
-                    self.end = self.end.min(show(&cut, LinkMotion::new(route, self.edge, bounds, near.from))?);
+                    let motion = LinkMotion::new(route, self.edge, bounds, near.from);
+                    self.end = self.end.min(show(&cut, motion, &mut self.target)?);
                 }
             }
         }

@@ -22,6 +22,7 @@ mod trajectory;
 
 pub(crate) use chain_motion::Bounds;
 pub use chain_motion::ChainMotion;
+pub(crate) use clearance::clearance_within;
 pub use clearance::{MotionClearance, MotionClearanceOptions, motion_clearance, motion_clearance_with};
 pub use first_contact::{MotionCast, MotionCastOptions, MotionIterate};
 pub(crate) use motion_cast::{check, checked};

@@ -2,6 +2,7 @@
 
 use convex_support::{AngularVelocity as _, Scalar as _, ScalarOf, SupportMap, Vector};
 
+use crate::motion::clearance_within;
 use crate::{
     ChainMotion, Contact, Distance, DistanceOptions, HalfSpace, Impact, LinearCast, LinearCastOptions, Motion,
     MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate, Ray, RayCast, RayCastError,
@@ -141,6 +142,21 @@ impl<S: SupportMap> Body<S> {
             normal: least.normal.map(|normal| place.rotation() * normal),
             ..least
         })
+    }
+
+    /// The least distance of a shape that moves and turns from this body, which is at rest, as far as it is less than a
+    /// limit.
+    pub(crate) fn clearance_within<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: &impl Trajectory<Vector = S::Vector>,
+        options: MotionClearanceOptions<S::Vector>,
+        limit: ScalarOf<S>,
+    ) -> Result<MotionClearance<S::Vector>, RayCastError> {
+        match self {
+            Self::Convex(body) => clearance_within(shape, motion, body, RigidMotion::default(), options, limit, |_| {}),
+            Self::HalfSpace(half_space) => half_space.clearance_within(shape, motion, options, limit, |_| {}),
+        }
     }
 
     /// The cast of a shape, `a`, and this body, `b`, as both move, by [`motion_cast`](crate::motion_cast()); the body

@@ -1,0 +1,180 @@
+//! The least distance of a linkage from anything along a path.
+//!
+//! It is the search of [`path`](super::path): bodies that come near are found first, and asked about one after the
+//! other. What counts as near falls to the least distance found so far, over bodies and edges, less the width of its
+//! bracket: of other bodies it is only proved that they stay farther away. Before an edge is looked at, the distances
+//! at its beginning tell what may count as near there.
+
+use convex_support::{Scalar, ScalarOf, SupportMap};
+use num_traits::Float;
+
+use super::error::LinkageError;
+use super::joint_trajectory::JointTrajectory;
+use super::link_motion::{LinkMotion, PathEdge};
+use super::path_answer::{Met, NearestOnPath, PathClearance};
+use super::robot::{LinkView, Linkage};
+use super::sweep::{Near, PathWorkspace, Sweep};
+use crate::{Body, DistanceOptions, MotionClearance, MotionClearanceOptions, Scene, distance};
+
+/// By how much more than the distance at the beginning of an edge counts as near at first, since it is rounded; and by
+/// how much more if nothing is that near after all.
+const ROOM: f64 = 1.0 + 1.0 / 1024.0;
+const WIDER: f64 = 16.0;
+
+impl<S: SupportMap> Linkage<S> {
+    /// The least distance along a path of the linkage, of any body of a link from the bodies of a scene at rest, and of
+    /// the [pairs](Self::with_pairs) of its own links: how near they come, when, which, and where.
+    ///
+    /// Waypoints and edges are those of [`path`](Self::path). If something meets, the distance is 0, and the time is
+    /// that of the first contact, of which [`path`](Self::path) has a bracket; what comes after it is not looked at.
+    ///
+    /// The options are those of [`motion_clearance`](crate::motion_clearance()): `max_time` is a time of the path, each
+    /// edge of which takes 1, and may be infinite; `max_iterations` counts for each body of a link and each body near
+    /// it, and `axis` has no effect. The lower bound is proved for all times, all bodies and all pairs, and accounts for
+    /// the rounding of the joints' poses.
+    ///
+    /// # Errors
+    /// Those of [`path`](Self::path).
+    pub fn path_clearance<O: SupportMap<Vector = S::Vector>, W: AsRef<[ScalarOf<S>]>>(
+        &self,
+        waypoints: &[W],
+        scene: &Scene<O>,
+        mut options: MotionClearanceOptions<S::Vector>,
+        workspace: &mut PathWorkspace<S::Vector>,
+    ) -> Result<PathClearance<S::Vector>, LinkageError> {
+        let last = self.check_waypoints(waypoints)?;
+        if last == 0 {
+            options.max_time = Scalar::ZERO;
+        }
+        let edge = |index: usize| PathEdge::between(waypoints, index);
+        self.clearance_on(last.max(1), edge, scene, options, workspace)
+    }
+
+    /// [`path_clearance`](Self::path_clearance) along edges on which joint values change as the caller states, as in
+    /// [`path_along`](Self::path_along).
+    ///
+    /// # Errors
+    /// Those of [`path_along`](Self::path_along).
+    pub fn path_clearance_along<O: SupportMap<Vector = S::Vector>, T: JointTrajectory<Scalar = ScalarOf<S>>>(
+        &self,
+        edges: &[T],
+        scene: &Scene<O>,
+        options: MotionClearanceOptions<S::Vector>,
+        workspace: &mut PathWorkspace<S::Vector>,
+    ) -> Result<PathClearance<S::Vector>, LinkageError> {
+        self.check_edges(edges)?;
+        self.clearance_on(edges.len(), |index| &edges[index], scene, options, workspace)
+    }
+
+    fn clearance_on<O: SupportMap<Vector = S::Vector>, E: JointTrajectory<Scalar = ScalarOf<S>> + Copy>(
+        &self,
+        edges: usize,
+        edge_at: impl Fn(usize) -> E,
+        scene: &Scene<O>,
+        options: MotionClearanceOptions<S::Vector>,
+        workspace: &mut PathWorkspace<S::Vector>,
+    ) -> Result<PathClearance<S::Vector>, LinkageError> {
+        let (zero, number) = (ScalarOf::<S>::ZERO, ScalarOf::<S>::from_f64);
+        let all = number(edges as f64);
+        let end = if options.max_time > all { all } else { options.max_time };
+        let options = options.with_max_time(end).checked()?;
+        workspace.put_half_spaces(scene);
+        let (mut answer, mut near_enough) = (PathClearance::NOTHING, ScalarOf::<S>::infinity());
+        let mut index = 0;
+        while index < edges && (index == 0 || options.max_time > number(index as f64)) {
+            let (duration, edge) = (Float::min(options.max_time - number(index as f64), Scalar::ONE), edge_at(index));
+            if answer.nearest.is_none() {
+                near_enough = Float::min(near_enough, self.nearest_at_start(edge, scene, near_enough)? * number(ROOM));
+            }
+            let (skeleton, tree, space) = (&self.skeleton, scene.tree(), &mut *workspace);
+            let mut sweep = Sweep { skeleton, tree, edge, target: near_enough, space, end: duration, parts: 0 };
+            sweep.run::<LinkageError>(&mut |near, motion, target| {
+                answer.casts += 1;
+                let next = if let Some(base) = self.skeleton.views[near.view].base {
+                    let base = Body::Convex(&self.bodies[base][near.other]);
+                    self.clearance_of(index, near, &motion, &base, options, *target)?
+                } else if let Some(obstacle) = scene.get(near.other) {
+                    self.clearance_of(index, near, &motion, obstacle, options, *target)?
+                } else {
+                    None
+                };
+                let Some(next) = next else { return Ok(duration) };
+                *target = next.least.lower;
+                answer.nearest = Some(next);
+                // Only an earlier contact can be the first.
+                Ok(if next.least.upper == zero { next.least.time } else { duration })
+            })?;
+            (near_enough, answer.parts) = (sweep.target, answer.parts + sweep.parts);
+            if answer.nearest.is_some_and(|nearest| nearest.least.upper == zero) {
+                break;
+            }
+            index += 1;
+            // The distance at the beginning was no more than it is known to be.
+            if index == edges && answer.nearest.is_none() && near_enough < ScalarOf::<S>::infinity() {
+                (near_enough, index) = (near_enough * number(WIDER), 0);
+            }
+        }
+        answer.lower = answer.nearest.map_or(near_enough, |nearest| nearest.least.lower);
+        Ok(answer)
+    }
+
+    /// The least distance of anything at the beginning of an edge, if it is less than a limit, to rounding.
+    fn nearest_at_start<O: SupportMap<Vector = S::Vector>, E: JointTrajectory<Scalar = ScalarOf<S>> + Copy>(
+        &self,
+        edge: E,
+        scene: &Scene<O>,
+        limit: ScalarOf<S>,
+    ) -> Result<ScalarOf<S>, LinkageError> {
+        let mut least = limit;
+        for LinkView { link, base, route } in &self.skeleton.views {
+            let frame = route.place(edge, Scalar::ZERO).1;
+            for shape in &self.bodies[*link] {
+                let options = DistanceOptions::new().with_limit(least);
+                let Ok(placed) = convex_support::Posed::from_matrix(shape, frame.rotation, frame.translation) else {
+                    continue;
+                };
+                let nearest = match base {
+                    None => scene.nearest(&placed, options).nearest.map(|nearest| nearest.distance.distance),
+                    Some(base) => self.bodies[*base]
+                        .iter()
+                        .map(|other| distance(&placed, other, options).distance)
+                        .min_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal)),
+                };
+                least = nearest.map_or(least, |nearest| Float::min(nearest, least));
+            }
+        }
+        Ok(least)
+    }
+
+    /// The least distance of a body of a link from a body that may come near it on an edge, if it is less than a limit.
+    fn clearance_of<O: SupportMap<Vector = S::Vector>, E: JointTrajectory<Scalar = ScalarOf<S>> + Copy>(
+        &self,
+        edge: usize,
+        near: &Near<ScalarOf<S>>,
+        motion: &LinkMotion<'_, S::Vector, E>,
+        against: &Body<O>,
+        options: MotionClearanceOptions<S::Vector>,
+        limit: ScalarOf<S>,
+    ) -> Result<Option<NearestOnPath<S::Vector>>, LinkageError> {
+        let &Near { from, to, view, body, other } = near;
+        let LinkView { link, base, .. } = self.skeleton.views[view];
+        let met = base.map_or(Met::Obstacle(other), |link| Met::Link { link, body: other });
+        let options = MotionClearanceOptions { axis: None, max_time: to - from, ..options };
+        let least = against.clearance_within(&self.bodies[link][body], motion, options, limit)?;
+        if least.upper == ScalarOf::<S>::infinity() && least.lower == limit {
+            return Ok(None);
+        }
+        let time = from + least.time;
+        let least = match base {
+            None => MotionClearance { time, ..least },
+            Some(base) => {
+                // The points were found in the frame of the second link.
+                let (_, frame) = self.skeleton.views[base].route.place(motion.edge, time);
+                let [point_a, point_b] = [least.point_a, least.point_b].map(|point| frame.of(point));
+                let normal = least.normal.map(|normal| frame.rotation * normal);
+                MotionClearance { time, point_a, point_b, normal, ..least }
+            }
+        };
+        Ok(Some(NearestOnPath { edge, link, body, met, least }))
+    }
+}
