@@ -4,7 +4,6 @@
 import { engine } from './engine.js';
 import { BODIES, QUESTIONS, copy, handle, plain } from './questions.js';
 import { HEIGHT, STYLE, View, WIDTH, arrow, bracket, cross, dot, f, gaps, grid, iterate, line, path, short } from './plane.js';
-import { rust } from './rust.js';
 import { Space } from './space.js';
 
 const $ = (id) => document.getElementById(id);
@@ -380,8 +379,13 @@ function tell() {
   $('proof').className = '';
   $('prove').hidden = Boolean(answer.error) || !['distance', 'intersect', 'ray_cast', 'linear_cast'].includes(query.query);
   if (document.activeElement !== $('line')) $('line').value = JSON.stringify(query);
-  $('rust').textContent = rust(query, reply.drawing?.dimension ?? 2);
+  if ($('program').open) write();
 }
+
+// The program is written where it is looked at.
+const program = async () => (await import('./rust.js')).rust(query, reply.drawing?.dimension ?? 2);
+const write = async () => ($('rust').textContent = await program());
+$('program').addEventListener('toggle', write);
 
 function later() {
   clearTimeout(told);
@@ -669,7 +673,7 @@ async function take(text, what) {
 }
 
 $('copy-link').addEventListener('click', () => (history.replaceState(null, '', link()), take(location.href, 'The link')));
-$('copy-rust').addEventListener('click', () => take(rust(query, reply.drawing?.dimension ?? 2), 'The program'));
+$('copy-rust').addEventListener('click', async () => take(await program(), 'The program'));
 $('copy-line').addEventListener('click', () => take(JSON.stringify(plain(query)), 'The query line'));
 $('prove').addEventListener('click', () => {
   $('proof').textContent = 'Proving in intervals of 256 bits …';

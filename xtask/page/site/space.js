@@ -2,6 +2,14 @@
 
 import { plain } from './questions.js';
 
+// Where a picture is seen from at first: a ray from beside its source, so that the hit is seen.
+function begin({ direction }) {
+  const length = direction ? Math.hypot(...direction) : 0;
+  if (!(length > 0)) return [0.6, 0.4, 1];
+  const [x, y, z] = direction.map((d) => -d / length);
+  return [Math.atan2(x, z) + 0.6, Math.max(-1, Math.min(1, Math.asin(y) + 0.3)), 1];
+}
+
 export class Space {
   constructor(canvas) {
     this.canvas = canvas;
@@ -59,7 +67,7 @@ export class Space {
     if (query.e1) query = { ...query, a: { type: 'ellipsoid', ...query.e1 }, b: { type: 'ellipsoid', ...query.e2 } };
     const key = JSON.stringify([query, marks]);
     if (key === this.key) return this.draw();
-    if (query.query !== this.query?.query || query.id !== this.query?.id) this.view = [0.6, 0.4, 1];
+    if (query.query !== this.query?.query || query.id !== this.query?.id) this.view = begin(query);
     Object.assign(this, { key, query: plain(query), marks, ways, ellipsoid: Array.isArray(answer.axes) ? answer : null });
     this.draw();
   }

@@ -73,7 +73,8 @@ fn no_meshes() -> Meshes {
 /// - `"look"`: `{"answer", "drawing", "seen"}`, that line, with what is drawn of the question and the iterates of its
 ///   search;
 /// - `"certify"`: the line with answer and certificate, as `cargo xtask query --certify` writes it;
-/// - in space, `"judge"`: what the checker says of such a line; and `"picture"`: the pixels of the bodies, four bytes each.
+/// - in space, `"judge"`: what the checker says of such a line; and `"picture"`: the pixels of the bodies, four bytes
+///   each.
 #[must_use]
 pub fn reply(request: &[u8]) -> Vec<u8> {
     let meshes = no_meshes();

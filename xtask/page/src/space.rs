@@ -115,8 +115,8 @@ fn things(query: &Object, meshes: &Meshes) -> (Vec<Thing>, (DVec3, f64)) {
     (things, seen)
 }
 
-/// The middle of what is seen, and its radius. A body many times as large as the smallest one does not count: a floor is
-/// seen where the other stands.
+/// The middle of what is seen, and its radius. A body many times as large as the smallest one does not count: a floor
+/// is seen where the other stands.
 fn span(things: &[Thing]) -> (DVec3, f64) {
     let least = things.iter().map(|t| t.radius).filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min);
     let seen = || things.iter().filter(|t| t.radius <= 12.0 * least || things.len() == 1);
