@@ -5,7 +5,10 @@ mod answers;
 mod body;
 mod bounds;
 mod contacts;
+mod handle;
 mod hits;
+mod mesh_hits;
+mod moving_pairs;
 mod nearest;
 mod nearest_pair;
 mod pairs;
@@ -19,11 +22,12 @@ use convex_support::{Aabb, Bvh, SupportMap, Triangle, Vector, Vector3, outer_box
 use crate::HalfSpace;
 
 pub use self::answers::{
-    BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, SceneAnyHit, SceneAnyWithin,
-    SceneCast, SceneDistance, SceneHits, SceneLinearCast, SceneMotionCast, ScenePair, SceneRayCast,
-    SceneSignedDistance, Work,
+    BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, PairImpact, SceneAnyHit,
+    SceneAnyWithin, SceneCast, SceneDistance, SceneFirstContact, SceneHits, SceneLinearCast, SceneMotionCast,
+    ScenePair, SceneRayCast, SceneSignedDistance, Work,
 };
 pub use self::body::Body;
+pub use self::handle::BodyHandle;
 
 /// A set of bodies with a tree of their boxes, for questions such as the first hit, the nearest body, or all near
 /// pairs.
@@ -76,8 +80,7 @@ pub use self::body::Body;
 /// body, and [`remove`](Self::remove) takes one out. The tree is adjusted each time, and is rebuilt when that is
 /// worth it.
 ///
-/// To find the pairs of bodies that may meet while all of them move straight during a step, make a scene of their
-/// swept volumes, each the `MinkowskiSum` of the body and a `Segment`, and ask for the pairs within 0.
+/// [`Among::first_contacts`] finds the pairs of bodies that meet while all of them move during a step, and when.
 ///
 /// # Groups
 /// A compound is represented by several bodies that are moved together. [`among`](Self::among) restricts a question
@@ -91,6 +94,8 @@ pub struct Scene<S: SupportMap> {
     half_spaces: Vec<usize>,
     /// Indices of removed bodies, to be used again.
     free: Vec<usize>,
+    /// How many bodies with an index were removed, up to the highest index of one.
+    removed: Vec<u32>,
 }
 
 impl<S: SupportMap> Scene<S> {
@@ -105,7 +110,7 @@ impl<S: SupportMap> Scene<S> {
             let around = body.as_ref().and_then(Body::convex).and_then(outer_box);
             boxes.push(around.ok_or(SceneError::NotFinite { body: index })?);
         }
-        Ok(Self { bodies, tree: Bvh::new(&boxes), half_spaces: Vec::new(), free: Vec::new() })
+        Ok(Self { bodies, tree: Bvh::new(&boxes), half_spaces: Vec::new(), free: Vec::new(), removed: Vec::new() })
     }
 
     /// The number of bodies.
@@ -168,10 +173,11 @@ impl<S: SupportMap> Scene<S> {
     }
 
     /// Takes a body out and returns it; `None` if there is no body with this index. A body that is added later may get
-    /// the index.
+    /// the index, but not the [handle](Self::handle).
     pub fn remove(&mut self, body: usize) -> Option<Body<S>> {
         let removed = self.bodies.get_mut(body)?.take()?;
         self.free.push(body);
+        self.forget(body);
         self.tree.remove(body);
         self.half_spaces.retain(|&half_space| half_space != body);
         Some(removed)
@@ -226,20 +232,27 @@ impl<S: SupportMap> Scene<S> {
 
 impl<S: SupportMap> Default for Scene<S> {
     fn default() -> Self {
-        Self { bodies: Vec::new(), tree: Bvh::default(), half_spaces: Vec::new(), free: Vec::new() }
+        Self {
+            bodies: Vec::new(),
+            tree: Bvh::default(),
+            half_spaces: Vec::new(),
+            free: Vec::new(),
+            removed: Vec::new(),
+        }
     }
 }
 
 impl<V: Vector> Scene<Triangle<V>> {
-    /// The mesh of these triangles, each given by the indices of three vertices. Body `i` is triangle `i`; rays and
-    /// shapes meet both of its sides.
+    /// The mesh of these triangles, each given by the indices of three vertices, of type `u32`, `usize` or any other
+    /// that an index may have. Body `i` is triangle `i`; rays and shapes meet both of its sides.
     ///
     /// # Errors
-    /// [`SceneError::NoSuchVertex`] if an index is that of no vertex; [`SceneError::NotFinite`] if a coordinate of a
+    /// [`SceneError::NoSuchVertex`] if an index is that of no vertex, with `usize::MAX` for a negative one; [`SceneError::NotFinite`] if a coordinate of a
     /// triangle is not finite.
-    pub fn mesh(vertices: &[V], triangles: &[[usize; 3]]) -> Result<Self, SceneError> {
+    pub fn mesh<I: Copy + TryInto<usize>>(vertices: &[V], triangles: &[[I; 3]]) -> Result<Self, SceneError> {
         let mut bodies = Vec::with_capacity(triangles.len());
         for (triangle, corners) in triangles.iter().enumerate() {
+            let corners = corners.map(|vertex| vertex.try_into().unwrap_or(usize::MAX));
             if let Some(&vertex) = corners.iter().find(|&&vertex| vertex >= vertices.len()) {
                 return Err(SceneError::NoSuchVertex { triangle, vertex });
             }

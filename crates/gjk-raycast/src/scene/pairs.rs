@@ -163,19 +163,23 @@ impl<'s, S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'s, S, T> {
         [i, j]: [usize; 2],
         is_late: impl FnOnce([usize; 2]) -> bool,
     ) -> ControlFlow<(), Option<BodyPair<'s, S, T>>> {
-        let (i, j) = if self.same && j < i { (j, i) } else { (i, j) };
-        if is_late([i, j]) {
+        let pair = if self.same && j < i { [j, i] } else { [i, j] };
+        if is_late(pair) {
             return ControlFlow::Continue(None);
         }
-        let (Some(a), Some(b)) = (self.a.body(i), self.b.body(j)) else { return ControlFlow::Continue(None) };
-        if self.a.is_pair_left_out(i, j) {
-            return ControlFlow::Continue(None);
-        }
+        let Some(found) = self.bodies(pair) else { return ControlFlow::Continue(None) };
         if self.a.stops(&mut self.work) {
             return ControlFlow::Break(());
         }
         self.work.tested += 1;
-        ControlFlow::Continue(Some(([i, j], a, b)))
+        ControlFlow::Continue(Some(found))
+    }
+
+    /// The bodies of a pair, if the question is about it.
+    #[inline]
+    pub(super) fn bodies(&self, [i, j]: [usize; 2]) -> Option<BodyPair<'s, S, T>> {
+        let (a, b) = (self.a.body(i)?, self.b.body(j)?);
+        (!self.a.is_pair_left_out(i, j)).then_some(([i, j], a, b))
     }
 
     /// Adds the work of a part of the search.
