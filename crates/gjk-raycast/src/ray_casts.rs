@@ -163,6 +163,28 @@ pub fn ray_entries_into<S: CrossedByLine + ?Sized>(
     outcome
 }
 
+/// [`ray_entries_into`] on all threads of the current [rayon](https://docs.rs/rayon) pool, with the same answers to the
+/// last bit.
+///
+/// # Errors
+/// The first error that [`ray_cast`] has for a ray. The answer of such a ray is NaN, and all others are written.
+///
+/// # Panics
+/// If the number of answers is not the number of rays.
+#[cfg(feature = "rayon")]
+pub fn par_ray_entries_into<S: CrossedByLine + Sync + ?Sized>(
+    target: &S,
+    rays: &[Ray<S::Vector>],
+    options: RayCastOptions<S::Vector>,
+    entries: &mut [RayEntry<S::Vector>],
+) -> Result<(), RayCastError> {
+    use rayon::prelude::*;
+    assert_eq!(rays.len(), entries.len(), "there must be as many answers as rays");
+    let pieces = rays.par_chunks(RAYS_PER_PIECE).zip(entries.par_chunks_mut(RAYS_PER_PIECE));
+    let cast = |(rays, entries): (&[_], &mut [_])| ray_entries_into(target, rays, options, entries);
+    pieces.map(cast).reduce(|| Ok(()), Result::and)
+}
+
 compiled_once! {
     #[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
     /// The lines of up to [`LINES`] rays; the last one fills the remaining places.

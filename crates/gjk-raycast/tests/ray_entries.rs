@@ -118,6 +118,13 @@ fn a_ray_that_is_none_is_an_error_and_spoils_no_other() {
     let mut entries = [RayEntry::default(); 70];
     let outcome = ray_entries_into(&ball, &rays, RayCastOptions::new(), &mut entries);
     assert_eq!(outcome, Err(RayCastError::ZeroDirection), "that of the first");
+    #[cfg(feature = "rayon")]
+    {
+        let (many, mut by_threads) = (rays.repeat(30), vec![RayEntry::default(); 2100]);
+        let outcome = gjk_raycast::par_ray_entries_into(&ball, &many, RayCastOptions::new(), &mut by_threads);
+        assert_eq!(outcome, Err(RayCastError::ZeroDirection), "that of the first, on all threads");
+        assert!(by_threads.chunks(70).all(|some| some.iter().zip(&entries).all(|(p, q)| bits(*p) == bits(*q))), "all");
+    }
     for (k, entry) in entries.iter().enumerate() {
         assert!(if k == 3 || k == 40 { entry.lambda.is_nan() } else { entry.lambda == 3.0 }, "{k}: {entry:?}");
     }

@@ -73,9 +73,11 @@ impl<S: SupportMap> Scene<S> {
         Among { scene: self, bodies: None, without_pairs: None, until: None, last: &[] }
     }
 
-    /// Questions about the bodies for whose index `picked` returns true, such as those of a layer or a group.
-    #[doc(alias("layer", "mask", "filter", "group", "query_filter"))]
+    /// Questions about the bodies for whose index `picked` returns true, such as those of a layer or a group: this is
+    /// the filter, the query mask and the collision group of other libraries. If the layers of each body are the bits of
+    /// a number in a list of yours, `|body| layers[body] & mask != 0` picks those of a mask.
     #[must_use]
+    #[doc(alias("filter", "layer", "mask", "group", "predicate", "query_filter"))]
     pub fn among<'s>(&'s self, picked: &'s (dyn Fn(usize) -> bool + Sync + 's)) -> Among<'s, S> {
         Among { bodies: Some(picked), ..self.all() }
     }
@@ -104,9 +106,9 @@ impl<S: SupportMap> Scene<S> {
 
 impl<'s, S: SupportMap> Among<'s, S> {
     /// Leaves out the pairs for whose indices `left_out` returns true, such as those of one group, or those that
-    /// are allowed to collide. It is called once for each pair whose boxes are near: with the lower index first, or for
-    /// two scenes with the index in the first one.
-    #[doc(alias("collision_filter", "allowed_collision_matrix"))]
+    /// are allowed to collide; the collision filter of other libraries. It is called once for each pair whose boxes are
+    /// near: with the lower index first, or for two scenes with the index in the first one.
+    #[doc(alias("collision_filter", "allowed_collision_matrix", "collision_groups", "ignore_pair"))]
     #[must_use]
     pub fn without_pairs(self, left_out: &'s (dyn Fn(usize, usize) -> bool + Sync + 's)) -> Self {
         Self { without_pairs: Some(left_out), ..self }

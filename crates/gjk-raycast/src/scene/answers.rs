@@ -257,6 +257,59 @@ impl<I> SceneAnyWithin<I> {
     }
 }
 
+/// The answer of [`Among::first_contact`](crate::Among::first_contact) and its kin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
+pub struct SceneFirstContact<V: Vector> {
+    /// The pair that meets first; `None` if none does. Of pairs that meet at the same time, it is the one with the
+    /// lowest first index, and of these the one with the lowest second index.
+    pub first: Option<PairImpact<V>>,
+    /// No pair meets before this time; infinite if none does.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub lower: V::Scalar,
+    /// The pair that may meet earliest, among those whose cast was [undecided](crate::Outcome::Undecided); if the
+    /// question is about the first contact alone, among those that may meet before it.
+    pub undecided: Option<[usize; 2]>,
+    /// What was done and what was left out.
+    pub work: Work,
+}
+
+/// Two bodies that move, and their first contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = "V: crate::data::VectorData"))]
+pub struct PairImpact<V: Vector> {
+    /// The index of the first: the lower one, or that in the first scene.
+    pub a: usize,
+    /// The index of the second.
+    pub b: usize,
+    /// The number of the member that the first was, if it is an instance of a [`Group`](crate::Group).
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub member_a: Option<usize>,
+    /// The same for the second.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub member_b: Option<usize>,
+    /// The first contact, with the normal out of the second. With a target distance the point is one of the second, or
+    /// of the half-space if one of them is.
+    pub impact: Impact<V>,
+    /// The lower end of the bracket of its time.
+    pub lower: V::Scalar,
+    /// The upper end; infinite if it is not certain that they meet at all.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub upper: V::Scalar,
+    /// How the iteration ended.
+    pub status: Status,
+}
+
+impl<V: Vector> PairImpact<V> {
+    pub(super) fn of<H>([a, b]: [Id; 2], impact: Impact<V>, cast: &Cast<H, V>) -> Self {
+        let &Cast { lower, upper, status, .. } = cast;
+        Self { a: a.body, b: b.body, member_a: a.member, member_b: b.member, impact, lower, upper, status }
+    }
+}
+
 /// A body, and its contact with a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

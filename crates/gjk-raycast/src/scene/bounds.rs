@@ -107,10 +107,34 @@ impl<V: Vector> MovingBalls<V> {
         motion: &impl Trajectory<Vector = V>,
         options: &MotionCastOptions<V>,
     ) -> Self {
+        let moving = |(start, duration, ball)| MovingBox::new(start, duration, ball);
+        Self(Self::parts(shape, motion, options).map(moving).collect())
+    }
+
+    /// A box around all of the balls, with room for the rounding of their positions; infinite for an endless motion.
+    pub(super) fn around<A: SupportMap<Vector = V> + ?Sized>(
+        shape: &A,
+        motion: &impl Trajectory<Vector = V>,
+        options: &MotionCastOptions<V>,
+    ) -> Aabb<V> {
+        let around = |(_, duration, ball): (_, V::Scalar, MovingBall<V>)| {
+            let reach = V::splat(ball.radius);
+            swept(Aabb { min: ball.start - reach, max: ball.start + reach }, ball.velocity, duration)
+        };
+        let both = |a: Aabb<V>, b: Aabb<V>| Aabb { min: a.min.min(b.min), max: a.max.max(b.max) };
+        Self::parts(shape, motion, options).map(around).reduce(both).unwrap_or_else(Aabb::everything)
+    }
+
+    /// When each part begins, how long it lasts, and its ball.
+    fn parts<A: SupportMap<Vector = V> + ?Sized>(
+        shape: &A,
+        motion: &impl Trajectory<Vector = V>,
+        options: &MotionCastOptions<V>,
+    ) -> impl Iterator<Item = (V::Scalar, V::Scalar, MovingBall<V>)> {
         let core = shape.core();
         let radius = core.size() + options.target_distance;
         let (ball, large) = (BoundingSphere { center: core.origin, radius }, radius * Scalar::from_f64(GROWTH));
-        let part = |index: usize, count: usize| {
+        let part = move |index: usize, count: usize| {
             let at = |index| match index {
                 0 => V::Scalar::ZERO,
                 _ => options.max_time * V::Scalar::from_f64(index as f64 / count as f64),
@@ -125,12 +149,20 @@ impl<V: Vector> MovingBalls<V> {
         {
             count *= 2;
         }
-        let moving = |index| {
-            let (start, duration, ball) = part(index, count);
-            MovingBox::new(start, duration, ball)
-        };
-        Self((0..count).map(moving).collect())
+        (0..count).map(move |index| part(index, count))
     }
+}
+
+/// What a box sweeps as it moves straight for a time, with room for the rounding of its positions: 64 ε of each
+/// coordinate. Endless ways are infinite.
+pub(super) fn swept<V: Vector>(around: Aabb<V>, velocity: V, duration: V::Scalar) -> Aabb<V> {
+    let way = V::from_fn(|i| {
+        let speed = velocity.get(i);
+        if speed == V::Scalar::ZERO { speed } else { speed * duration }
+    });
+    let size = around.min.abs().max(around.max.abs()) + way.abs();
+    let room = size * (V::Scalar::from_f64(64.0) * V::Scalar::EPSILON);
+    Aabb { min: around.min + way.min(V::ZERO) - room, max: around.max + way.max(V::ZERO) + room }
 }
 
 /// The box around a moving ball, the time when it begins to move, and its duration, rounded up.

@@ -418,7 +418,7 @@ fn swept_point<V: Vector>(ray: Ray<V>) -> Moving<V> {
 
 /// The box of a moving shape, in the frame of the bodies, with room for the target distance. If a number of the shape
 /// is not finite, no body is left out and every single query reports it.
-fn swept_shape<A: SupportMap + ?Sized>(
+pub(super) fn swept_shape<A: SupportMap + ?Sized>(
     shape: &A,
     motion: Motion<A::Vector>,
     options: &LinearCastOptions<A::Vector>,

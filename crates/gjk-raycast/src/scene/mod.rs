@@ -5,8 +5,11 @@ mod answers;
 mod body;
 mod bounds;
 mod contacts;
+mod handle;
 mod hits;
 mod instance;
+mod mesh_hits;
+mod moving_pairs;
 mod nearest;
 mod nearest_pair;
 mod pairs;
@@ -21,11 +24,12 @@ use convex_support::{Aabb, Bvh, InvalidShape, Posed, SupportMap, Triangle, Vecto
 use crate::{HalfSpace, Pose};
 
 pub use self::answers::{
-    BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, SceneAnyHit, SceneAnyWithin,
-    SceneCast, SceneDistance, SceneHits, SceneLinearCast, SceneMotionCast, ScenePair, SceneRayCast,
-    SceneSignedDistance, Work,
+    BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, PairImpact, SceneAnyHit,
+    SceneAnyWithin, SceneCast, SceneDistance, SceneFirstContact, SceneHits, SceneLinearCast, SceneMotionCast,
+    ScenePair, SceneRayCast, SceneSignedDistance, Work,
 };
 pub use self::body::Body;
+pub use self::handle::BodyHandle;
 pub use self::instance::{Group, Instance};
 
 /// A set of bodies with a tree of their boxes, for questions such as the first hit, the nearest body, or all near
@@ -79,8 +83,7 @@ pub use self::instance::{Group, Instance};
 /// body, and [`remove`](Self::remove) takes one out. The tree is adjusted each time, and is rebuilt when that is
 /// worth it.
 ///
-/// To find the pairs of bodies that may meet while all of them move straight during a step, make a scene of their
-/// swept volumes, each the `MinkowskiSum` of the body and a `Segment`, and ask for the pairs within 0.
+/// [`Among::first_contacts`] finds the pairs of bodies that meet while all of them move during a step, and when.
 ///
 /// # Groups
 /// A compound or a mesh that moves as one is a scene of its own, made a [`Group`]. A body of this scene may be an
@@ -100,6 +103,8 @@ pub struct Scene<S: SupportMap> {
     half_spaces: Vec<usize>,
     /// Indices of removed bodies, to be used again.
     free: Vec<usize>,
+    /// How many bodies with an index were removed, up to the highest index of one.
+    removed: Vec<u32>,
 }
 
 /// What is at an index.
@@ -150,7 +155,7 @@ impl<S: SupportMap> Scene<S> {
             boxes.push(around.ok_or(SceneError::NotFinite { body: index })?);
         }
         let members = bodies.len();
-        Ok(Self { bodies, tree: Bvh::new(&boxes), members, half_spaces: Vec::new(), free: Vec::new() })
+        Ok(Self { bodies, tree: Bvh::new(&boxes), members, ..Self::default() })
     }
 
     /// The number of bodies.
@@ -273,7 +278,7 @@ impl<S: SupportMap> Scene<S> {
     }
 
     /// Takes a body out and returns it; `None` if there is no body with this index, or an instance. A body that is
-    /// added later may get the index.
+    /// added later may get the index, but not the [handle](Self::handle).
     pub fn remove(&mut self, body: usize) -> Option<Body<S>> {
         self.get(body)?;
         match self.take(body)? {
@@ -295,6 +300,7 @@ impl<S: SupportMap> Scene<S> {
         let removed = self.bodies.get_mut(index)?.take()?;
         self.members -= removed.members();
         self.free.push(index);
+        self.forget(index);
         self.tree.remove(index);
         self.half_spaces.retain(|&half_space| half_space != index);
         Some(removed)
@@ -376,21 +382,29 @@ impl<S: SupportMap> Scene<S> {
 
 impl<S: SupportMap> Default for Scene<S> {
     fn default() -> Self {
-        Self { bodies: Vec::new(), tree: Bvh::default(), members: 0, half_spaces: Vec::new(), free: Vec::new() }
+        Self {
+            bodies: Vec::new(),
+            tree: Bvh::default(),
+            members: 0,
+            half_spaces: Vec::new(),
+            free: Vec::new(),
+            removed: Vec::new(),
+        }
     }
 }
 
 impl<V: Vector> Scene<Triangle<V>> {
-    /// The mesh of these triangles, each given by the indices of three vertices. Body `i` is triangle `i`; rays and
-    /// shapes meet both of its sides.
+    /// The mesh of these triangles, each given by the indices of three vertices, of type `u32`, `usize` or any other
+    /// that an index may have. Body `i` is triangle `i`; rays and shapes meet both of its sides.
     ///
     /// # Errors
-    /// [`SceneError::NoSuchVertex`] if an index is that of no vertex; [`SceneError::NotFinite`] if a coordinate of a
-    /// triangle is not finite.
+    /// [`SceneError::NoSuchVertex`] if an index is that of no vertex, with `usize::MAX` for a negative one;
+    /// [`SceneError::NotFinite`] if a coordinate of a triangle is not finite.
     #[doc(alias("trimesh", "triangle_mesh"))]
-    pub fn mesh(vertices: &[V], triangles: &[[usize; 3]]) -> Result<Self, SceneError> {
+    pub fn mesh<I: Copy + TryInto<usize>>(vertices: &[V], triangles: &[[I; 3]]) -> Result<Self, SceneError> {
         let mut bodies = Vec::with_capacity(triangles.len());
         for (triangle, corners) in triangles.iter().enumerate() {
+            let corners = corners.map(|vertex| vertex.try_into().unwrap_or(usize::MAX));
             if let Some(&vertex) = corners.iter().find(|&&vertex| vertex >= vertices.len()) {
                 return Err(SceneError::NoSuchVertex { triangle, vertex });
             }

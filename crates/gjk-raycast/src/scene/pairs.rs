@@ -6,7 +6,7 @@ use core::ops::ControlFlow;
 use convex_support::{Aabb, BoxDistance, Bvh, PairSearch, Scalar, ScalarOf, SupportMap, Vector};
 
 use super::among::Among;
-use super::answers::{PairContact, PairDistance, Work, reuse};
+use super::answers::{PairContact, PairDistance, PairImpact, Work, reuse};
 use super::bounds::{HeightBound, Question};
 use super::instance::{Asked, Id, asked_pair};
 use super::{Body, Scene, Slot};
@@ -131,6 +131,12 @@ pub(super) trait OfPair {
 }
 
 impl<V: Vector> OfPair for PairDistance<V> {
+    fn ids(&self) -> [Id; 2] {
+        [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
+    }
+}
+
+impl<V: Vector> OfPair for PairImpact<V> {
     fn ids(&self) -> [Id; 2] {
         [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
     }

@@ -2,8 +2,9 @@
 
 use convex_support::{AngularVelocity as _, Rotation as _, Scalar, bounding_box};
 use gjk_raycast::{
-    BodyHit, CastMethod, DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Outcome, PairDistance, Ray,
-    RayCastOptions, RigidMotion, SceneRayCast, SignedDistanceOptions, StartInContact, Status, SubAlgorithm,
+    BodyHit, CastMethod, DistanceOptions, LinearCastOptions, Motion, MotionCast, MotionCastOptions, Outcome,
+    PairDistance, PairImpact, Ray, RayCastOptions, RigidMotion, SceneRayCast, SignedDistanceOptions, StartInContact,
+    Status, SubAlgorithm,
 };
 use num_traits::Float;
 
@@ -24,6 +25,7 @@ pub(crate) struct Count {
     overlaps: usize,
     pairs: usize,
     contacts: usize,
+    moving: usize,
     tested: usize,
     culled: usize,
 }
@@ -37,6 +39,7 @@ impl Count {
             && self.overlaps > many / 10
             && self.pairs > many
             && self.contacts > many
+            && self.moving > many
             && self.culled > self.tested
     }
 }
@@ -55,6 +58,7 @@ pub(crate) fn ask<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut
     pairs(world, numbers, count);
     contacts(world, numbers, count);
     nearest_pairs(world, numbers, count);
+    moving_pairs(world, numbers, count);
 }
 
 /// A length at the scale of the world, and a point in it or about.
@@ -528,4 +532,121 @@ fn nearest_pairs<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut 
     assert_eq!(any.any, near.iter().any(|near| near.distance.distance <= within), "any within {within} of a shape");
     assert_eq!(any.work.tested + any.work.culled, world.scene.len(), "every body is one or the other");
     count.questions += 1;
+}
+
+/// The first contacts of all pairs that move, within one scene and of two, straight, turning, or at rest.
+fn moving_pairs<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
+    let (size, _) = scale(world, numbers);
+    let others = super::worlds::world::<V>(numbers, world.kind).scene;
+    if world.scene.len() * others.len() > 400 || world.scene.len() > 20 {
+        return;
+    }
+    let end = world.scene.iter().chain(others.iter()).map(|(index, _)| index + 1).max().unwrap_or(0);
+    let straight = numbers.below(2) == 0;
+    let mut motion = || match numbers.below(if straight { 3 } else { 5 }) {
+        0 => RigidMotion::default(),
+        1 => RigidMotion::translation(V::axis(0) * V::Scalar::from_f64(size)),
+        2 => RigidMotion::translation(numbers.vector(size * 3.0)),
+        _ => {
+            let turned = V::Rotation::from_xyzw([0; 4].map(|_| V::Scalar::from_f64(numbers.signed())));
+            let angular_velocity = V::AngularVelocity::between(V::Rotation::default(), turned);
+            RigidMotion { velocity: numbers.vector(size), angular_velocity, center: numbers.vector(size * 3.0) }
+        }
+    };
+    let motions: [Vec<_>; 2] = [(); 2].map(|()| (0..end).map(|_| motion()).collect());
+    let time = [0.7, 1.0, 0.0, f64::INFINITY][numbers.below(if straight { 4 } else { 3 })];
+    let mut options = MotionCastOptions::default().with_max_time(V::Scalar::from_f64(time));
+    match numbers.below(5) {
+        0 => options.target_distance = V::Scalar::from_f64(size * [0.01, 1.0, -1.0][numbers.below(3)]),
+        1 => options.start_in_contact = StartInContact::IfDeeper,
+        2 => options.max_iterations = 3 + numbers.below(20),
+        _ => {}
+    }
+    let every = numbers.below(3) > 0;
+    let picked = |index: usize| every || index.is_multiple_of(2);
+    let left_out = |a: usize, b: usize| !every && (a + b).is_multiple_of(3);
+    let questions = world.scene.among(&picked);
+    let questions = questions.without_pairs(&left_out);
+    for is_own in [true, false] {
+        let second = if is_own { &world.scene } else { &others };
+        let of_second = &motions[usize::from(!is_own)];
+        let [of_a, of_b] =
+            [&|i: usize| motions[0][i], &|i: usize| of_second[i]] as [&dyn Fn(usize) -> RigidMotion<V>; 2];
+        let mut casts = Vec::new();
+        for (a, first) in world.scene.iter().filter(|(a, _)| picked(*a)) {
+            for (b, other) in second.iter().filter(|(b, _)| !is_own || a < *b && picked(*b)) {
+                let cast = match (first, other) {
+                    _ if left_out(a, b) => continue,
+                    (gjk_raycast::Body::Convex(first), other) => {
+                        other.motion_cast_of_both(first, of_a(a), of_b(b), options).expect("good motions")
+                    }
+                    (first, gjk_raycast::Body::Convex(other)) => {
+                        let cast = first.motion_cast_of_both(other, of_b(b), of_a(a), options).expect("good motions");
+                        let outcome = match cast.outcome {
+                            Outcome::Hit(mut hit) => {
+                                hit.normal = hit.normal.map(|normal| -normal);
+                                Outcome::Hit(hit)
+                            }
+                            outcome => outcome,
+                        };
+                        MotionCast { outcome, ..cast }
+                    }
+                    _ => continue,
+                };
+                casts.push(([a, b], cast));
+            }
+        }
+        let mut due: Vec<_> = casts
+            .iter()
+            .filter_map(|&([a, b], cast)| {
+                let (lower, upper, status) = (cast.lower, cast.upper, cast.status);
+                Some(PairImpact {
+                    a,
+                    b,
+                    member_a: None,
+                    member_b: None,
+                    impact: cast.outcome.hit()?,
+                    lower,
+                    upper,
+                    status,
+                })
+            })
+            .collect();
+        due.sort_by(|p, q| {
+            p.impact.time.partial_cmp(&q.impact.time).expect("no NaN").then((p.a, p.b).cmp(&(q.a, q.b)))
+        });
+        let mut found = Vec::new();
+        let (all, first) = if is_own {
+            (questions.first_contacts(of_a, options, &mut found), questions.first_contact(of_a, options))
+        } else {
+            let motions = [of_a, of_b];
+            (
+                questions.first_contacts_between(second, motions, options, &mut found),
+                questions.first_contact_between(second, motions, options),
+            )
+        };
+        let (all, first) = (all.expect("good motions"), first.expect("good motions"));
+        let question = format!("kind {}, own {is_own}, {options:?}", world.kind);
+        // Where a bracket stays open the box may know better.
+        let is_open = casts.iter().any(|(_, cast)| !cast.outcome.is_miss() && cast.status != Status::Converged);
+        assert!(
+            found == due || is_open && found.iter().all(|hit| due.contains(hit)),
+            "{found:?}, not {due:?}: {question}"
+        );
+        if !is_open {
+            assert_eq!((first.first, all.first), (due.first().copied(), due.first().copied()), "the first: {question}");
+            assert_eq!((first.undecided, all.undecided), (None, None), "{question}");
+        }
+        assert_eq!(first.first, all.first, "alone: {question}");
+        assert_eq!(first.lower, all.lower, "alone: {question}");
+        let lower = casts.iter().filter(|(_, cast)| !cast.outcome.is_miss()).map(|(_, cast)| cast.lower);
+        let lower = lower.fold(V::Scalar::infinity(), Float::min);
+        assert!(lower <= all.lower && (is_open || lower == all.lower), "{lower} {}: {question}", all.lower);
+        assert!(first.work.tested <= all.work.tested && all.work.tested <= casts.len(), "each once: {question}");
+        assert_eq!(first.work.tested + first.work.culled, all.work.tested + all.work.culled, "all pairs: {question}");
+        count.tested += all.work.tested;
+        count.culled += all.work.culled;
+        count.moving += due.len();
+        count.questions += 2;
+    }
 }

@@ -247,7 +247,9 @@ impl<V: Space> World<V> {
 
         self.distances(numbers, size, &shape);
         self.pairs(numbers, size);
-        16
+        self.nearest_pairs(numbers, size);
+        self.moving_pairs(numbers, size);
+        23
     }
 
     fn distances(&self, numbers: &mut Numbers, size: f64, shape: &Shared<V>) {
@@ -299,6 +301,75 @@ impl<V: Space> World<V> {
             let member = self.scene.member(found.body, found.member.expect("a member")).expect("it was found");
             assert_eq!(gjk_raycast::contact(shape, &member, within, options), Some(found.contact));
         }
+    }
+
+    fn nearest_pairs(&self, numbers: &mut Numbers, size: f64) {
+        let (ours, flat) = (self.scene.all(), self.flat.all());
+        let of_one = |a: usize, b: usize| self.paths[a][0] == self.paths[b][0];
+        let apart = flat.without_pairs(&of_one);
+        let near = if numbers.below(2) == 0 { f64::INFINITY } else { size * numbers.unit() };
+        let options = DistanceOptions::default().with_limit(V::Scalar::from_f64(near));
+        let [a, b] = [ours.least_pair(options), apart.least_pair(options)];
+        let named =
+            |p: gjk_raycast::PairDistance<V>| (self.flat(p.a, p.member_a), self.flat(p.b, p.member_b), p.distance);
+        assert_eq!(a.nearest.map(named), b.nearest.map(|p| (p.a, p.b, p.distance)));
+        assert!(a.lower >= b.lower && a.nearest.is_none_or(|pair| a.lower <= pair.distance.distance));
+        assert_eq!(a.work.tested + a.work.culled, b.work.tested + b.work.culled - self.pairs_of_one());
+        let within = V::Scalar::from_f64(size * numbers.unit());
+        let [a, b] = [ours, apart].map(|all| all.any_pair_within(within, DistanceOptions::default()));
+        assert_eq!((a.any, a.is_certain()), (b.any, b.is_certain()));
+        let (shape, all) = (self.shape(numbers, 0).2, DistanceOptions::default());
+        assert_eq!(ours.any_within(&shape, within, all).any, flat.any_within(&shape, within, all).any);
+        // Some bodies of one scene, and all of the other.
+        let even = |body: usize| body.is_multiple_of(2);
+        let even_path = |body: usize| even(self.paths[body][0]);
+        let a = self.scene.among(&even).nearest_between(&self.flat, options);
+        let b = self.flat.among(&even_path).nearest_between(&self.flat, options);
+        let named = |p: gjk_raycast::PairDistance<V>| (self.flat(p.a, p.member_a), p.b, p.distance);
+        assert_eq!(a.nearest.map(named), b.nearest.map(|p| (p.a, p.b, p.distance)));
+        let a = self.flat.among(&even_path).nearest_between(&self.scene, options);
+        let named = |p: gjk_raycast::PairDistance<V>| (p.a, self.flat(p.b, p.member_b), p.distance);
+        assert_eq!(a.nearest.map(named), b.nearest.map(|p| (p.a, p.b, p.distance)));
+    }
+
+    /// The number of pairs of members of one body.
+    fn pairs_of_one(&self) -> usize {
+        self.groups.iter().map(|(_, members)| members.len() * (members.len() - 1) / 2).sum()
+    }
+
+    fn moving_pairs(&self, numbers: &mut Numbers, size: f64) {
+        let count = 1 + self.paths.iter().map(|path| path[0]).max().unwrap_or(0);
+        let motions: Vec<_> = (0..count)
+            .map(|_| {
+                let turned = V::Rotation::from_xyzw([0; 4].map(|_| V::Scalar::from_f64(numbers.signed())));
+                let angular_velocity = match numbers.below(2) {
+                    0 => convex_support::AngularVelocity::between(V::Rotation::default(), turned),
+                    _ => Default::default(),
+                };
+                RigidMotion { velocity: numbers.vector(2.0 * size), angular_velocity, center: numbers.vector(size) }
+            })
+            .collect();
+        let (ours, flat) = (self.scene.all(), self.flat.all());
+        let of_one = |a: usize, b: usize| self.paths[a][0] == self.paths[b][0];
+        let flat = flat.without_pairs(&of_one);
+        let (of_body, of_member) = (|body: usize| motions[body], |body: usize| motions[self.paths[body][0]]);
+        let step = MotionCastOptions::default().with_max_time(V::Scalar::from_f64(1.0));
+        let (mut found, mut due) = (Vec::new(), Vec::new());
+        let a = ours.first_contacts(&of_body, step, &mut found).expect("good motions");
+        let b = flat.first_contacts(&of_member, step, &mut due).expect("good motions");
+        let named = |p: &gjk_raycast::PairImpact<V>| {
+            (self.flat(p.a, p.member_a), self.flat(p.b, p.member_b), p.impact, p.lower, p.upper)
+        };
+        let own = |p: &gjk_raycast::PairImpact<V>| (p.a, p.b, p.impact, p.lower, p.upper);
+        assert_eq!(found.iter().map(named).collect::<Vec<_>>(), due.iter().map(own).collect::<Vec<_>>());
+        assert_eq!(a.first.as_ref().map(named), b.first.as_ref().map(own));
+        let a = ours.first_contact(&of_body, step).expect("good motions");
+        assert_eq!(a.first.as_ref().map(named), b.first.as_ref().map(own));
+        let motions = [&of_member as _, &of_body as _];
+        let _ = self.flat.all().first_contacts_between(&self.scene, motions, step, &mut found).expect("good motions");
+        let named = |p: &gjk_raycast::PairImpact<V>| (p.a, self.flat(p.b, p.member_b), p.impact, p.lower, p.upper);
+        let kept = found.iter().map(named).filter(|&(a, b, ..)| a < b && !of_one(a, b));
+        assert_eq!(kept.collect::<Vec<_>>(), due.iter().map(own).collect::<Vec<_>>());
     }
 
     fn pairs(&self, numbers: &mut Numbers, size: f64) {
@@ -401,7 +472,7 @@ fn ball(x: f64) -> Posed<Ball<DVec3>> {
 fn what_cannot_be_a_group_or_a_place_is_said() {
     let none = Scene::<Ball<DVec3>>::default();
     assert_eq!(Group::new(none).err(), Some(SceneError::EmptyGroup), "nothing to move");
-    let mesh = Scene::mesh(&[DVec3::ZERO], &[]).expect("an empty scene");
+    let mesh = Scene::mesh(&[DVec3::ZERO], &[[0_u32; 3]; 0]).expect("an empty scene");
     assert_eq!(Group::new(mesh).err(), Some(SceneError::EmptyGroup), "a mesh of no triangles");
     let mut floor = Scene::new([ball(0.0)]).expect("finite");
     floor.insert_half_space(HalfSpace::new(DVec3::Y, 0.0).expect("a normal"));

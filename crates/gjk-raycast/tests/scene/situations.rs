@@ -101,6 +101,47 @@ fn of_equals_the_lowest_index_whatever_the_order() {
     assert_eq!(first.body, 0, "it is back, though last in the tree");
 }
 
+#[test]
+fn of_equal_pairs_the_lowest_indices_whatever_the_order() {
+    let row = || Scene::new((0..40).map(|i| ball(2.0 * f64::from(i)))).unwrap();
+    let (mut scene, other) = (row(), row());
+    let options = DistanceOptions::default();
+    let pair =
+        |answer: gjk_raycast::ScenePair<DVec3>| answer.nearest.map(|near| (near.a, near.b, near.distance.distance));
+    assert_eq!(pair(scene.all().least_pair(options)), Some((0, 1, 1.0)), "of equal gaps");
+    assert_eq!(pair(scene.all().nearest_between(&other, options)), Some((0, 0, 0.0)), "of equal overlaps");
+    scene.remove(0);
+    assert_eq!(pair(scene.all().least_pair(options)), Some((1, 2, 1.0)), "of those that are left");
+    scene.insert(ball(500.0)).unwrap();
+    assert_eq!(pair(scene.all().nearest_between(&other, options)), Some((1, 1, 0.0)), "another one is 0");
+    // They all close up at the same time.
+    let motion = |body: usize| RigidMotion::translation(DVec3::X * if body % 2 == 0 { 0.25 } else { -0.25 });
+    let first = scene.all().first_contact(&motion, MotionCastOptions::new().with_max_time(9.0)).unwrap();
+    assert_eq!(first.first.map(|first| (first.a, first.b, first.impact.time)), Some((2, 3, 2.0)), "of equal times");
+    assert!(first.work.tested < 40, "neighbours alone are cast");
+    // Nothing, and one body.
+    let empty = Scene::<Posed<Ball<DVec3>>>::default();
+    let one = Scene::new([ball(0.0)]).unwrap();
+    assert_eq!((pair(empty.all().least_pair(options)), pair(one.all().least_pair(options))), (None, None), "no pair");
+    assert_eq!(pair(one.all().nearest_between(&empty, options)), None, "nor with none");
+    assert_eq!(empty.all().least_pair(options).lower, f64::INFINITY, "nothing is near");
+    assert!(
+        !one.all().any_pair_within(9.0, options).any && !empty.all().any_within(&ball(0.0), 9.0, options).any,
+        "none"
+    );
+    assert_eq!(one.all().first_contact(&motion, MotionCastOptions::new()).unwrap().first, None, "meets nobody");
+}
+
+#[test]
+fn a_motion_that_is_none_is_refused() {
+    let scene = Scene::new([ball(0.0), ball(900.0)]).unwrap();
+    let motion = |body: usize| RigidMotion::translation(DVec3::X * if body == 0 { 0.0 } else { f64::NAN });
+    let refused = scene.all().first_contact(&motion, MotionCastOptions::new().with_max_time(1.0));
+    assert_eq!(refused.unwrap_err(), RayCastError::NonFinite { parameter: "motion", index: 0 }, "the second");
+    let endless = MotionCastOptions::new().with_max_time(f64::NAN);
+    assert!(scene.all().first_contact(&|_| RigidMotion::default(), endless).is_err(), "no end");
+}
+
 /// Of rays that share a search, some hit a near ball, and others only a far one, which the search has to reach.
 #[test]
 fn rays_side_by_side_share_a_search_and_no_hit() {
