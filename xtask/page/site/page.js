@@ -98,6 +98,11 @@ function update({ isDrag = false } = {}) {
     steps.push({ lower, upper: end.upper ?? Infinity, name: 'answer', it: null });
   }
   if (isDrag) delete query._step;
+  if (isDrag && query._issue) {
+    // A pose that was moved is no longer the report's, and has another truth.
+    for (const key of ['id', '_issue', '_title', '_reported', '_pose', '_truth', '_today', 'expect', 'allow']) delete query[key];
+    fillOptions();
+  }
   const last = Math.max(steps.length - 1, 0);
   const step = Math.min(query._step ?? last, last);
   Object.assign($('step'), { max: last, value: step, disabled: last === 0 });
@@ -230,15 +235,17 @@ function drawBodies(answer, outlines, seen, step, isEnd) {
       break;
     case 'linear_cast': {
       const time = isEnd ? answer.time : step?.it?.lower;
-      if (Number.isFinite(time)) out += outline('a', 'a ghost', (p) => moveTo('a', p, time)) ?? '';
+      if (Number.isFinite(time)) for (const key of ['a', 'b'].filter((key) => query[`velocity_${key}`])) out += outline(key, `${key} ghost`, (p) => moveTo(key, p, time)) ?? '';
       if (isEnd && answer.hit) over += dot(view, answer.point, 'plane', 'contact');
       over += arrow(view, handle(query, 'a')?.of.translation ?? [0, 0], tip(), 'a', 'velocity');
       break;
     }
     case 'motion_cast': {
       const time = Number($('time').value);
-      for (let i = 1; i < 8; i++) out += `<g opacity=".35">${outline('a', 'a ghost', (p) => moveTo('a', p, (query.max_time * i) / 8)) ?? ''}</g>`;
-      out += outline('a', 'a', (p) => moveTo('a', p, time)) ?? '';
+      for (const key of ['a', 'b'].filter((key) => query[`motion_${key}`])) {
+        for (let i = 1; i < 8; i++) out += `<g opacity=".35">${outline(key, `${key} ghost`, (p) => moveTo(key, p, (query.max_time * i) / 8)) ?? ''}</g>`;
+        out += outline(key, key, (p) => moveTo(key, p, time)) ?? '';
+      }
       if (answer.hit) over += dot(view, answer.point, 'plane', 'contact');
       over += arrow(view, handle(query, 'a')?.of.translation ?? [0, 0], tip(), 'a', 'velocity');
       break;
@@ -265,8 +272,8 @@ function drawBodies(answer, outlines, seen, step, isEnd) {
   }
   const captions = {
     distance: 'The bodies and their closest points', signed_distance: 'The bodies, and the shortest way out where they overlap',
-    ray_cast: 'The ray, the target, and the simplex of the search', linear_cast: 'A moves along the arrow until it touches B',
-    motion_cast: 'A moves and turns; drag time below', margin: 'A grown about its centre until it touches B',
+    ray_cast: 'The ray, the target, and the simplex of the search', linear_cast: 'They move until they touch',
+    motion_cast: 'What moves and turns; drag time below', margin: 'A grown about its centre until it touches B',
     enclosing_ellipsoid: 'The least ellipse around the points; the discs are their weights',
   };
   $('bodies-caption').textContent = captions[query.query] ?? 'The bodies';
@@ -323,11 +330,14 @@ function drawSearch(answer, outlines, seen, step, isEnd) {
 
 // ---- numbers and words ----
 
+// To the bit: a script writes -0 as 0.
+const exact = (x) => (Object.is(x, -0) ? '-0' : x);
+
 function numbers() {
   const { answer, seen } = reply;
   const k = now(), step = steps[k], isEnd = k >= steps.length - 1;
   const rows = [];
-  const add = (name, value, key = '') => value !== undefined && value !== null && rows.push(`<dt>${name}</dt><dd ${key && `data-key="${key}"`}>${escape(Array.isArray(value) ? value.join(', ') : value)}</dd>`);
+  const add = (name, value, key = '') => value !== undefined && value !== null && rows.push(`<dt>${name}</dt><dd ${key && `data-key="${key}"`}>${escape([value].flat().map(exact).join(', '))}</dd>`);
   if (!answer.error && !isEnd && step) {
     add('step', `${k} of ${steps.length - 1}`);
     add('lower', step.lower, 'lower');

@@ -178,6 +178,6 @@ export function gaps(seen, end, answer, time) {
   out += `<path class="line ink" d="M${f(x(time))} ${top}V${view.height - bottom}"/>`;
   if (answer.hit) out += `<path class="line b" stroke-dasharray="4 4" d="M${f(x(answer.time))} ${top}V${view.height - bottom}"/><text class="halo b strong" x="${f(Math.min(x(answer.time) + 6, view.width - 90))}" y="${top + 14}">contact</text>`;
   out += `<text x="${left}" y="${view.height - 16}">0</text><text x="${view.width - right}" y="${view.height - 16}" text-anchor="end">time ${short(end, 4)}</text>`;
-  out += `<text x="4" y="${top + 4}">${short(high, 3)}</text><text x="4" y="${view.height - bottom}">gap 0</text>`;
+  out += `<text x="4" y="${top + 4}">${seen.length ? short(high, 3) : ''}</text><text x="4" y="${view.height - bottom}">gap 0</text>`;
   return out;
 }

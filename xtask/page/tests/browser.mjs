@@ -323,6 +323,18 @@ await test('every line of the museum and of the suite that the page answers is a
   await page.context().close();
 });
 
+await test('a pose of the museum in the plane can be dragged, and then is no longer that of the report', async () => {
+  const page = await open();
+  await page.locator('#museum').selectOption('meshes-639');
+  const before = await agrees(page);
+  assert.match(await page.locator('#story').textContent(), /Meshes/);
+  await dragTo(page, 'target', 20, -10);
+  const after = await agrees(page);
+  assert.notEqual(after.lambda, before.lambda);
+  assert.ok(!(await page.locator('#story').isVisible()));
+  await page.context().close();
+});
+
 await test('what the checker says of the museum is what it says elsewhere', async () => {
   const page = await open();
   const poses = JSON.parse(readFileSync(join(site, 'museum.json'), 'utf8')).filter((pose) => /^(distance|intersect|ray_cast|linear_cast)$/.test(pose.query)).map((pose) => JSON.stringify(pose));
