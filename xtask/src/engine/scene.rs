@@ -1,6 +1,6 @@
 //! `scene`.
 
-use convex_support::{Scalar, Vector};
+use convex_support::Vector;
 use gjk_raycast::{
     BodyHit, DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, PairContact, Ray, RayCastOptions, RayHit,
     RigidMotion, SceneCast, SignedDistanceOptions,
