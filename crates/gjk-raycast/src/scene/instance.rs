@@ -134,7 +134,7 @@ impl<S: SupportMap + Send + Sync> Members<S::Vector> for Scene<S> {
 /// pose, and all share one tree. A clone is the same group.
 ///
 /// ```
-/// use convex_support::{Ball, Cuboid, Posed, glam::{DQuat, DVec3}};
+/// use convex_support::{Cuboid, Posed, glam::{DQuat, DVec3}};
 /// use gjk_raycast::{Group, Pose, Ray, RayCastOptions, Scene};
 ///
 /// // One mesh, twice, and a hull.
