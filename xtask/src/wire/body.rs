@@ -46,7 +46,7 @@ pub enum Element {
 }
 
 /// The same in a space.
-pub enum Built<V: Vector> {
+pub(crate) enum Built<V: Vector> {
     Body(SceneBody<Solid<V>>),
     Group(Group<V>, ScenePose<V>),
 }
@@ -64,7 +64,7 @@ impl Element {
     }
 
     /// The body in a space; `place` is where the query says it, for errors.
-    pub fn build<V: Space>(&self, place: &str, meshes: &Meshes) -> Result<Built<V>, Problem> {
+    pub(crate) fn build<V: Space>(&self, place: &str, meshes: &Meshes) -> Result<Built<V>, Problem> {
         Ok(match self {
             Self::Body(body) => Built::Body(body.build(place, meshes)?),
             Self::Group { pose, of } => {
@@ -80,7 +80,7 @@ impl Element {
 }
 
 /// The scene of these bodies, with indices in their order: built at once up to the first that is no shape.
-pub fn scene_of<V: Vector>(mut bodies: Vec<Built<V>>) -> Result<Scene<Solid<V>>, SceneError> {
+pub(crate) fn scene_of<V: Vector>(mut bodies: Vec<Built<V>>) -> Result<Scene<Solid<V>>, SceneError> {
     use SceneBody::{Convex, HalfSpace};
     let is_shape = |body: &Built<V>| matches!(body, Built::Body(Convex(_)));
     let first = bodies.iter().position(|body| !is_shape(body)).unwrap_or(bodies.len());

@@ -320,7 +320,9 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<bool, RayCastError> {
         let end = options.max_lambda;
         let swept: [_; BUNDLE] = core::array::from_fn(|k| swept_point(rays[k.min(rays.len() - 1)]));
-        let Some(around) = Moving::all(swept) else { return Ok(false) };
+        // In the frames of instances, rays that are near one another hardly ever have directions of the same signs.
+        let around = Moving::all(swept).filter(|_| self.scene.members == self.scene.len());
+        let Some(around) = around else { return Ok(false) };
         let (mut found, mut tested, mut visited) = ([First::default(); BUNDLE], [0; BUNDLE], 0);
         let work = self.in_order(&around, end, |id, _, body| {
             let around = match body {

@@ -134,7 +134,7 @@ impl<S: SupportMap + Send + Sync> Members<S::Vector> for Scene<S> {
 /// pose, and all share one tree. A clone is the same group.
 ///
 /// ```
-/// use convex_support::{Ball, Cuboid, Posed, glam::{DQuat, DVec3}};
+/// use convex_support::{Cuboid, Posed, glam::{DQuat, DVec3}};
 /// use gjk_raycast::{Group, Pose, Ray, RayCastOptions, Scene};
 ///
 /// // One mesh, twice, and a hull.
@@ -270,13 +270,15 @@ pub struct Instance<V: Vector> {
 impl<V: Vector> Instance<V> {
     /// The instance that is the body of this index.
     pub(super) fn new(body: usize, group: Group<V>, pose: Pose<V>) -> Result<Self, SceneError> {
-        let at = Point::new(V::ZERO).and_then(|zero| Posed::new(zero, pose.rotation, pose.translation));
-        let at = at.map_err(|why| SceneError::NoPose { body, why })?;
-        let Aabb { min, max } = group.around;
-        let reach = (min.abs().max(max.abs()) + pose.translation.abs()).dot(V::ONE);
-        // With so much to spare no member is beyond the largest number, wherever in the box it is.
-        let is_finite = (reach * Scalar::from_f64(8.0)).is_finite();
-        if is_finite { Ok(Self { group, pose, at, reach }) } else { Err(SceneError::NotFinite { body }) }
+        let (at, reach) = placed(body, &group, pose)?;
+        Ok(Self { group, pose, at, reach })
+    }
+
+    /// Moves it.
+    pub(super) fn place(&mut self, body: usize, pose: Pose<V>) -> Result<(), SceneError> {
+        (self.at, self.reach) = placed(body, &self.group, pose)?;
+        self.pose = pose;
+        Ok(())
     }
 
     /// The box around it.
@@ -286,12 +288,6 @@ impl<V: Vector> Instance<V> {
         let half = (0..V::DIM).fold(V::splat(room(self.reach)), |sum, j| sum + rotation.col(j).abs() * half.get(j));
         let center = rotation * center + self.at.translation();
         Aabb { min: center - half, max: center + half }
-    }
-
-    /// Moves it.
-    pub(super) fn place(&mut self, body: usize, pose: Pose<V>) -> Result<(), SceneError> {
-        *self = Self::new(body, self.group.clone(), pose)?;
-        Ok(())
     }
 
     /// What it is an instance of.
@@ -402,6 +398,17 @@ impl<V: Vector> Instance<V> {
     fn frame(&self) -> InstanceFrame<V> {
         InstanceFrame { rotation: self.at.rotation(), translation: self.at.translation(), reach: self.reach }
     }
+}
+
+/// The pose with its matrix, and the reach of a group there.
+fn placed<V: Vector>(body: usize, group: &Group<V>, pose: Pose<V>) -> Result<(Posed<Point<V>>, V::Scalar), SceneError> {
+    let at = Point::new(V::ZERO).and_then(|zero| Posed::new(zero, pose.rotation, pose.translation));
+    let at = at.map_err(|why| SceneError::NoPose { body, why })?;
+    let Aabb { min, max } = group.around;
+    let reach = (min.abs().max(max.abs()) + pose.translation.abs()).dot(V::ONE);
+    // With so much to spare no member is beyond the largest number, wherever in the box it is.
+    let is_finite = (reach * Scalar::from_f64(8.0)).is_finite();
+    if is_finite { Ok((at, reach)) } else { Err(SceneError::NotFinite { body }) }
 }
 
 /// Called for members that are found: the number of the member, its bound, the member and its box. It returns the limit

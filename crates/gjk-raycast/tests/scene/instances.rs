@@ -59,7 +59,7 @@ fn group<V: Space>(numbers: &mut Numbers, kind: usize, depth: usize) -> (Group<V
     }
     members.sort_by(|(p, _), (q, _)| p.cmp(q));
     let group = Group::new(scene).expect("there are members");
-    assert_eq!(group.len(), members.len());
+    assert_eq!(group.len(), members.len(), "as of the flat scene");
     (group, members)
 }
 
@@ -112,7 +112,10 @@ impl<V: Space> World<V> {
             0 => self.scene.update_instances(|_, _| pose(numbers, kind)).expect("finite"),
             1 => {
                 let Some((index, _)) = self.groups.pop() else { return };
-                assert!(self.scene.remove(index).is_none() && self.scene.remove_instance(index).is_some());
+                assert!(
+                    self.scene.remove(index).is_none() && self.scene.remove_instance(index).is_some(),
+                    "an instance is taken out as what it is"
+                );
             }
             _ => {
                 for (index, _) in &self.groups {
@@ -170,14 +173,14 @@ impl<V: Space> World<V> {
     fn first<H: Copy + PartialEq + std::fmt::Debug>(&self, casts: [SceneCast<H, V::Scalar>; 2], is_open: bool) {
         let [ours, flat] = casts;
         assert_eq!(ours.work.tested + ours.work.culled, self.flat.len(), "every member is one or the other");
-        assert!(ours.lower >= flat.lower);
+        assert!(ours.lower >= flat.lower, "the greatest that is known");
         let answer = |first: &gjk_raycast::BodyHit<H, V::Scalar>| (first.hit, first.lower, first.upper, first.status);
         let found = ours.first.as_ref().map(|first| (self.flat(first.body, first.member), answer(first)));
         let due = flat.first.as_ref().map(|first| (first.body, answer(first)));
         let is_open = is_open || !flat.is_certain() || flat.first.is_some_and(|it| it.status != Status::Converged);
         if !is_open {
-            assert_eq!(found, due);
-            assert_eq!(ours.lower, flat.lower);
+            assert_eq!(found, due, "as of the flat scene");
+            assert_eq!(ours.lower, flat.lower, "as of the flat scene");
             assert_eq!(ours.undecided, flat.undecided.map(|body| self.paths[body][0]), "{casts:?} {:?}", self.paths);
         }
     }
@@ -200,7 +203,7 @@ impl<V: Space> World<V> {
         self.first([ours, flat].map(|all| all.ray_cast(ray, options).expect("a good ray")), is_open);
         let any = |any: gjk_raycast::SceneAnyHit| any.hit;
         let hit = [ours, flat].map(|all| any(all.any_hit(ray, options).expect("a good ray")));
-        assert!(hit[0] == hit[1] || is_open);
+        assert!(hit[0] == hit[1] || is_open, "as of the flat scene");
         let (mut hits, mut of_flat) = (Vec::new(), Vec::new());
         let _ = ours.ray_cast_all(ray, options, &mut hits).expect("a good ray");
         let _ = flat.ray_cast_all(ray, options, &mut of_flat).expect("a good ray");
@@ -258,12 +261,15 @@ impl<V: Space> World<V> {
         let options = DistanceOptions::default().with_limit(V::Scalar::from_f64(near));
         let [a, b] = [ours, flat].map(|all| all.nearest(shape, options));
         let found = a.nearest.map(|near| (self.flat(near.body, near.member), near.distance));
-        assert_eq!(found, b.nearest.map(|near| (near.body, near.distance)));
-        assert!(a.lower >= b.lower && a.nearest.is_none_or(|near| a.lower <= near.distance.distance));
+        assert_eq!(found, b.nearest.map(|near| (near.body, near.distance)), "as of the flat scene");
+        assert!(
+            a.lower >= b.lower && a.nearest.is_none_or(|near| a.lower <= near.distance.distance),
+            "the greatest that is known"
+        );
         let within = V::Scalar::from_f64(size * numbers.unit() * 3.0);
         let mut found = Vec::new();
         let work = ours.nearest_k(shape, 5, options, &mut found);
-        assert_eq!(work.tested + work.culled, self.flat.len());
+        assert_eq!(work.tested + work.culled, self.flat.len(), "every member is one or the other");
         let of_flat = |near: &[gjk_raycast::BodyDistance<V>]| {
             near.iter().map(|near| (near.body, near.distance)).collect::<Vec<_>>()
         };
@@ -272,34 +278,49 @@ impl<V: Space> World<V> {
         };
         let mut others = Vec::new();
         flat.nearest_k(shape, 5, options, &mut others);
-        assert_eq!(named(&found), of_flat(&others));
+        assert_eq!(named(&found), of_flat(&others), "as of the flat scene");
         let work = ours.all_within(shape, within, DistanceOptions::default(), &mut found);
         flat.all_within(shape, within, DistanceOptions::default(), &mut others);
-        assert_eq!(named(&found), of_flat(&others));
-        assert_eq!(work.tested + work.culled, self.flat.len());
+        assert_eq!(named(&found), of_flat(&others), "as of the flat scene");
+        assert_eq!(work.tested + work.culled, self.flat.len(), "every member is one or the other");
         let options = SignedDistanceOptions::default();
         let [a, b] = [ours, flat].map(|all| all.least_signed_distance(shape, options));
         let found = a.least.map(|least| (self.flat(least.body, least.member), least.distance));
-        assert_eq!(found, b.least.map(|least| (least.body, least.distance)));
-        assert!(a.lower >= b.lower && a.least.is_none_or(|least| a.lower <= least.distance.signed_distance));
+        assert_eq!(found, b.least.map(|least| (least.body, least.distance)), "as of the flat scene");
+        assert!(
+            a.lower >= b.lower && a.least.is_none_or(|least| a.lower <= least.distance.signed_distance),
+            "the greatest that is known"
+        );
         // A layer.
         let even = |body: usize| body.is_multiple_of(2);
         let even_path = |body: usize| even(self.paths[body][0]);
         let a = self.scene.among(&even).nearest(shape, DistanceOptions::default());
         let b = self.flat.among(&even_path).nearest(shape, DistanceOptions::default());
         let found = a.nearest.map(|near| (self.flat(near.body, near.member), near.distance));
-        assert_eq!(found, b.nearest.map(|near| (near.body, near.distance)));
+        assert_eq!(found, b.nearest.map(|near| (near.body, near.distance)), "as of the flat scene");
 
         let (mut contacts, mut of_flat) = (Vec::new(), Vec::new());
         ours.contacts_of(shape, within, options, &mut contacts);
         flat.contacts_of(shape, within, options, &mut of_flat);
         let named = contacts.iter().map(|found| (self.flat(found.body, found.member), found.contact));
-        assert_eq!(named.collect::<Vec<_>>(), of_flat.iter().map(|it| (it.body, it.contact)).collect::<Vec<_>>());
-        assert_eq!(self.scene.leave_out_seams(&mut contacts), self.flat.leave_out_seams(&mut of_flat));
+        assert_eq!(
+            named.collect::<Vec<_>>(),
+            of_flat.iter().map(|it| (it.body, it.contact)).collect::<Vec<_>>(),
+            "as of the flat scene"
+        );
+        assert_eq!(
+            self.scene.leave_out_seams(&mut contacts),
+            self.flat.leave_out_seams(&mut of_flat),
+            "as of the flat scene"
+        );
         // The member by itself has the same answer.
         if let Some(found) = contacts.iter().find(|found| found.member.is_some()) {
             let member = self.scene.member(found.body, found.member.expect("a member")).expect("it was found");
-            assert_eq!(gjk_raycast::contact(shape, &member, within, options), Some(found.contact));
+            assert_eq!(
+                gjk_raycast::contact(shape, &member, within, options),
+                Some(found.contact),
+                "as of the flat scene"
+            );
         }
     }
 
@@ -382,7 +403,11 @@ impl<V: Space> World<V> {
         let work = ours.pairs_within(within, DistanceOptions::default(), &mut pairs);
         flat.pairs_within(within, DistanceOptions::default(), &mut of_flat);
         let named = pairs.iter().map(|p| (self.flat(p.a, p.member_a), self.flat(p.b, p.member_b), p.distance));
-        assert_eq!(named.collect::<Vec<_>>(), of_flat.iter().map(|p| (p.a, p.b, p.distance)).collect::<Vec<_>>());
+        assert_eq!(
+            named.collect::<Vec<_>>(),
+            of_flat.iter().map(|p| (p.a, p.b, p.distance)).collect::<Vec<_>>(),
+            "as of the flat scene"
+        );
         let mut all = 0;
         for (a, first) in self.flat.iter() {
             let rest = self.flat.iter().filter(|&(b, _)| b > a && !of_one(a, b));
@@ -394,24 +419,40 @@ impl<V: Space> World<V> {
         self.flat.all().pairs_between(&self.scene, within, DistanceOptions::default(), &mut between);
         let ab = |p: &gjk_raycast::PairDistance<V>| (p.a, self.flat(p.b, p.member_b), p.distance);
         let kept = between.iter().map(ab).filter(|&(a, b, _)| a < b && !of_one(a, b));
-        assert_eq!(kept.collect::<Vec<_>>(), of_flat.iter().map(|p| (p.a, p.b, p.distance)).collect::<Vec<_>>());
+        assert_eq!(
+            kept.collect::<Vec<_>>(),
+            of_flat.iter().map(|p| (p.a, p.b, p.distance)).collect::<Vec<_>>(),
+            "as of the flat scene"
+        );
         ours.pairs_between(&self.flat, within, DistanceOptions::default(), &mut between);
         let ab = |p: &gjk_raycast::PairDistance<V>| (self.flat(p.a, p.member_a), p.b, p.distance);
         let kept = between.iter().map(ab).filter(|&(a, b, _)| a < b && !of_one(a, b));
-        assert_eq!(kept.collect::<Vec<_>>(), of_flat.iter().map(|p| (p.a, p.b, p.distance)).collect::<Vec<_>>());
+        assert_eq!(
+            kept.collect::<Vec<_>>(),
+            of_flat.iter().map(|p| (p.a, p.b, p.distance)).collect::<Vec<_>>(),
+            "as of the flat scene"
+        );
 
         let options = SignedDistanceOptions::default();
         let (mut contacts, mut of_flat) = (Vec::new(), Vec::new());
         ours.contacts_within(within, options, &mut contacts);
         flat.contacts_within(within, options, &mut of_flat);
         let named = contacts.iter().map(|p| (self.flat(p.a, p.member_a), self.flat(p.b, p.member_b), p.contact));
-        assert_eq!(named.collect::<Vec<_>>(), of_flat.iter().map(|p| (p.a, p.b, p.contact)).collect::<Vec<_>>());
+        assert_eq!(
+            named.collect::<Vec<_>>(),
+            of_flat.iter().map(|p| (p.a, p.b, p.contact)).collect::<Vec<_>>(),
+            "as of the flat scene"
+        );
         // The next step knows the last.
         let (mut next, mut next_of_flat) = (Vec::new(), Vec::new());
         ours.after(&contacts).contacts_within(within, options, &mut next);
         flat.after(&of_flat).contacts_within(within, options, &mut next_of_flat);
         let contact = |found: &gjk_raycast::PairContact<V>| found.contact;
-        assert_eq!(next.iter().map(contact).collect::<Vec<_>>(), next_of_flat.iter().map(contact).collect::<Vec<_>>());
+        assert_eq!(
+            next.iter().map(contact).collect::<Vec<_>>(),
+            next_of_flat.iter().map(contact).collect::<Vec<_>>(),
+            "as of the flat scene"
+        );
         #[cfg(feature = "rayon")]
         {
             let (mut parallel, mut parallel_contacts) = (Vec::new(), Vec::new());
@@ -420,7 +461,7 @@ impl<V: Space> World<V> {
             assert_eq!((parallel, parallel_contacts), (pairs, contacts.clone()), "on all threads");
         }
         let left_out = self.scene.leave_out_seams_of_pairs(&mut contacts);
-        assert_eq!(left_out, self.flat.leave_out_seams_of_pairs(&mut of_flat));
+        assert_eq!(left_out, self.flat.leave_out_seams_of_pairs(&mut of_flat), "as of the flat scene");
     }
 }
 
