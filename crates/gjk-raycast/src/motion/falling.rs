@@ -60,20 +60,23 @@ impl<V: Vector> Search<'_, V> {
         if !(limit > zero) {
             return;
         }
-        // If the bodies may touch at the start, there is nothing to fall.
-        let Ok(near) = self.look_closely(zero, self.near.normal) else { return };
-        (self.near, self.least) = (near, near);
-        self.before = Instant { time: -V::Scalar::ONE, ..near };
         let go_on = |search: &mut Search<'_, V>| search.fall_on();
         let farthest = |search: &Search<'_, V>, m: V::Scalar| search.farthest(m);
+        let falling = Falling { target: zero, slack: zero, go_on, farthest };
+        if !(self.near.gap > limit) {
+            // If the bodies may touch at the start, there is nothing to fall.
+            let Ok(near) = self.look_closely(zero, self.near.normal) else { return };
+            (self.near, self.least) = (near, near);
+            self.before = Instant { time: -V::Scalar::ONE, ..near };
+        }
         self.options.tolerance = tolerance;
-        self.falling = Some(Falling { target: zero, slack: zero, go_on, farthest });
-        if !(near.gap > limit) {
-            self.fall(zero);
-        } else if let Some(falling) = &mut self.falling {
-            falling.target = limit;
+        if self.near.gap > limit {
+            self.falling = Some(Falling { target: limit, ..falling });
             self.bodies.aim(limit);
             self.measure_from(zero, limit);
+        } else {
+            self.falling = Some(falling);
+            self.fall(zero);
         }
     }
 
