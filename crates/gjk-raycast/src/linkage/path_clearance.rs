@@ -28,8 +28,8 @@ impl<S: SupportMap> Linkage<S> {
     ///
     /// The options are those of [`motion_clearance`](crate::motion_clearance()): `max_time` is a time of the path, each
     /// edge of which takes 1, and may be infinite; `max_iterations` counts for each body of a link and each body near
-    /// it, and `axis` has no effect. The lower bound is proved for all times, all bodies and all pairs, and accounts for
-    /// the rounding of the joints' poses.
+    /// it, and `axis` has no effect. The lower bound is proved for all times, bodies and pairs, and accounts for the
+    /// rounding of the joints' poses.
     ///
     /// # Errors
     /// Those of [`path`](Self::path).
