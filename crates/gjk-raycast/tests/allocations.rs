@@ -9,8 +9,8 @@ use convex_support::glam::{DQuat, DVec3, Quat, Vec3};
 use convex_support::{Capsule, Cone, Cylinder, Ellipsoid, Polytope, Posed, SupportMap};
 use gjk_raycast::{
     Joint, JointBounds, JointKind, JointState, JointTrajectory, LinearCastOptions, Link, Linkage, Motion,
-    MotionCastOptions, PathWorkspace, Pose, RigidMotion, Scene, SignedDistanceOptions, StartInContact, contact,
-    linear_cast, motion_cast, signed_distance,
+    MotionCastOptions, MotionClearanceOptions, PathWorkspace, Pose, RigidMotion, Scene, SignedDistanceOptions,
+    StartInContact, contact, linear_cast, motion_cast, signed_distance,
 };
 
 type Shape = Box<dyn SupportMap<Vector = DVec3> + Send + Sync>;
@@ -159,6 +159,7 @@ fn a_path_allocates_nothing_once_warm() {
             let ways = [[0.0, 0.0, 0.0], [0.3, 0.1, 0.2], [turn, 0.5 * turn, 0.8 * turn]];
             let _ = black_box(robot.path(&ways, &scene, MotionCastOptions::new(), &mut workspace));
             let _ = black_box(robot.path_along(&[Swing(turn)], &scene, MotionCastOptions::new(), &mut workspace));
+            let _ = black_box(robot.path_clearance(&ways, &scene, MotionClearanceOptions::new(), &mut workspace));
         }
     });
     assert!(cold > 4 && warm == 0, "{cold} allocations, and then {warm}");

@@ -31,7 +31,7 @@ fn ball_at(x: f64, y: f64) -> Posed<Ball<DVec2>> {
 #[test]
 fn an_arm_passes_a_ball() {
     let (robot, options, mut workspace) = (arm(), MotionClearanceOptions::new(), PathWorkspace::new());
-    // Stretched out it reaches 2.05, and the ball begins at 2.4. It points at the ball in the middle of the second edge.
+    // Stretched out it reaches 2.05, and the ball begins at 2.4. It points at it in the middle of the second edge.
     let mut scene = Scene::new([ball_at(-7.0, 0.0), ball_at(0.0, 2.5)]).expect("finite");
     let ways = [[0.0, 0.0], [1.0, 0.0], [std::f64::consts::PI - 1.0, 0.0]];
     let answer = robot.path_clearance(&ways, &scene, options, &mut workspace).expect("values for its joints");

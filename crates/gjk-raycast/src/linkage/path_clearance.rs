@@ -2,8 +2,8 @@
 //!
 //! It is the search of [`path`](super::path): bodies that come near are found first, and asked about one after the
 //! other. What counts as near falls to the least distance found so far, over bodies and edges, less the width of its
-//! bracket: of other bodies it is only proved that they stay farther away. Before an edge is looked at, the distances
-//! at its beginning tell what may count as near there.
+//! bracket: of other bodies it is only proved that they stay farther away. Before the first edge is looked at, the
+//! distances at three of its times tell what may count as near.
 
 use convex_support::{Scalar, ScalarOf, SupportMap};
 use num_traits::Float;
@@ -14,12 +14,10 @@ use super::link_motion::{LinkMotion, PathEdge};
 use super::path_answer::{Met, NearestOnPath, PathClearance};
 use super::robot::{LinkView, Linkage};
 use super::sweep::{Near, PathWorkspace, Sweep};
-use crate::{Body, DistanceOptions, MotionClearance, MotionClearanceOptions, Scene, distance};
+use crate::{Body, DistanceOptions, MotionClearance, MotionClearanceOptions, Scene, Status, distance};
 
-/// By how much more than the distance at the beginning of an edge counts as near at first, since it is rounded; and by
-/// how much more if nothing is that near after all.
+/// By how much more than the distance at one time counts as near at first, since it is rounded.
 const ROOM: f64 = 1.0 + 1.0 / 1024.0;
-const WIDER: f64 = 16.0;
 
 impl<S: SupportMap> Linkage<S> {
     /// The least distance along a path of the linkage, of any body of a link from the bodies of a scene at rest, and of
@@ -30,8 +28,8 @@ impl<S: SupportMap> Linkage<S> {
     ///
     /// The options are those of [`motion_clearance`](crate::motion_clearance()): `max_time` is a time of the path, each
     /// edge of which takes 1, and may be infinite; `max_iterations` counts for each body of a link and each body near
-    /// it, and `axis` has no effect. The lower bound is proved for all times, all bodies and all pairs, and accounts for
-    /// the rounding of the joints' poses.
+    /// it, and `axis` has no effect. The lower bound is proved for all times, bodies and pairs, and accounts for the
+    /// rounding of the joints' poses.
     ///
     /// # Errors
     /// Those of [`path`](Self::path).
@@ -80,11 +78,15 @@ impl<S: SupportMap> Linkage<S> {
         let options = options.with_max_time(end).checked()?;
         workspace.put_half_spaces(scene);
         let (mut answer, mut near_enough) = (PathClearance::NOTHING, ScalarOf::<S>::infinity());
-        let mut index = 0;
-        while index < edges && (index == 0 || options.max_time > number(index as f64)) {
+        let edges = (0..edges).take_while(|&index| index == 0 || options.max_time > number(index as f64)).count();
+        let (mut index, mut is_again) = (0, false);
+        while index < edges {
             let (duration, edge) = (Float::min(options.max_time - number(index as f64), Scalar::ONE), edge_at(index));
-            if answer.nearest.is_none() {
-                near_enough = Float::min(near_enough, self.nearest_at_start(edge, scene, near_enough)? * number(ROOM));
+            if answer.nearest.is_none() && !is_again {
+                for time in [zero, duration * number(0.5), duration] {
+                    let nearest = self.nearest_at(edge, time, scene, near_enough);
+                    near_enough = Float::min(near_enough, nearest * number(ROOM));
+                }
             }
             let (skeleton, tree, space) = (&self.skeleton, scene.tree(), &mut *workspace);
             let mut sweep = Sweep { skeleton, tree, edge, target: near_enough, space, end: duration, parts: 0 };
@@ -98,36 +100,48 @@ impl<S: SupportMap> Linkage<S> {
                 } else {
                     None
                 };
-                let Some(next) = next else { return Ok(duration) };
+                let is_met = next.is_some_and(|next| next.least.upper == zero);
+                let Some(next) = next.filter(|next| is_met || next.least.lower < *target) else { return Ok(duration) };
                 *target = next.least.lower;
-                answer.nearest = Some(next);
+                match &mut answer.nearest {
+                    // Rounding leaves open whether they come nearer.
+                    Some(known) if !is_met && next.least.upper >= known.least.upper => {
+                        let is_narrow = known.least.upper - *target <= options.tolerance * known.least.upper;
+                        known.least.status = if is_narrow { known.least.status } else { Status::Stalled };
+                    }
+                    nearest => *nearest = Some(next),
+                }
                 // Only an earlier contact can be the first.
-                Ok(if next.least.upper == zero { next.least.time } else { duration })
+                Ok(if is_met { next.least.time } else { duration })
             })?;
             (near_enough, answer.parts) = (sweep.target, answer.parts + sweep.parts);
             if answer.nearest.is_some_and(|nearest| nearest.least.upper == zero) {
                 break;
             }
             index += 1;
-            // The distance at the beginning was no more than it is known to be.
-            if index == edges && answer.nearest.is_none() && near_enough < ScalarOf::<S>::infinity() {
-                (near_enough, index) = (near_enough * number(WIDER), 0);
+            // The distance at one time was rounded by more than that: now everything counts as near.
+            if index == edges && answer.nearest.is_none() && !is_again {
+                (near_enough, index, is_again) = (Float::infinity(), 0, true);
             }
         }
-        answer.lower = answer.nearest.map_or(near_enough, |nearest| nearest.least.lower);
+        answer.lower = near_enough;
+        if let Some(nearest) = &mut answer.nearest {
+            nearest.least.lower = near_enough;
+        }
         Ok(answer)
     }
 
-    /// The least distance of anything at the beginning of an edge, if it is less than a limit, to rounding.
-    fn nearest_at_start<O: SupportMap<Vector = S::Vector>, E: JointTrajectory<Scalar = ScalarOf<S>> + Copy>(
+    /// The least distance of anything at a time of an edge, if it is less than a limit, to rounding.
+    fn nearest_at<O: SupportMap<Vector = S::Vector>, E: JointTrajectory<Scalar = ScalarOf<S>> + Copy>(
         &self,
         edge: E,
+        time: ScalarOf<S>,
         scene: &Scene<O>,
         limit: ScalarOf<S>,
-    ) -> Result<ScalarOf<S>, LinkageError> {
+    ) -> ScalarOf<S> {
         let mut least = limit;
         for LinkView { link, base, route } in &self.skeleton.views {
-            let frame = route.place(edge, Scalar::ZERO).1;
+            let frame = route.place(edge, time).1;
             for shape in &self.bodies[*link] {
                 let options = DistanceOptions::new().with_limit(least);
                 let Ok(placed) = convex_support::Posed::from_matrix(shape, frame.rotation, frame.translation) else {
@@ -143,7 +157,7 @@ impl<S: SupportMap> Linkage<S> {
                 least = nearest.map_or(least, |nearest| Float::min(nearest, least));
             }
         }
-        Ok(least)
+        least
     }
 
     /// The least distance of a body of a link from a body that may come near it on an edge, if it is less than a limit.

@@ -60,20 +60,23 @@ impl<V: Vector> Search<'_, V> {
         if !(limit > zero) {
             return;
         }
-        // If the bodies may touch at the start, there is nothing to fall.
-        let Ok(near) = self.look_closely(zero, self.near.normal) else { return };
-        (self.near, self.least) = (near, near);
-        self.before = Instant { time: -V::Scalar::ONE, ..near };
         let go_on = |search: &mut Search<'_, V>| search.fall_on();
         let farthest = |search: &Search<'_, V>, m: V::Scalar| search.farthest(m);
+        let falling = Falling { target: zero, slack: zero, go_on, farthest };
+        if !(self.near.gap > limit) {
+            // If the bodies may touch at the start, there is nothing to fall.
+            let Ok(near) = self.look_closely(zero, self.near.normal) else { return };
+            (self.near, self.least) = (near, near);
+            self.before = Instant { time: -V::Scalar::ONE, ..near };
+        }
         self.options.tolerance = tolerance;
-        self.falling = Some(Falling { target: zero, slack: zero, go_on, farthest });
-        if !(near.gap > limit) {
-            self.fall(zero);
-        } else if let Some(falling) = &mut self.falling {
-            falling.target = limit;
+        if self.near.gap > limit {
+            self.falling = Some(Falling { target: limit, ..falling });
             self.bodies.aim(limit);
             self.measure_from(zero, limit);
+        } else {
+            self.falling = Some(falling);
+            self.fall(zero);
         }
     }
 
@@ -176,8 +179,8 @@ impl<V: Vector> Search<'_, V> {
         self.ahead = None;
     }
 
-    /// The nearest of a few instants over the whole motion, or the local minimum beside it, if bodies turn. If they only
-    /// move, the distance has one minimum, which is found from the start.
+    /// The nearest of a few instants over the whole motion, or the local minimum beside it, if bodies turn. If they do
+    /// not, the distance has one minimum, which is found from the start.
     fn survey(&mut self) -> Result<Instant<V>, Instant<V>> {
         let (start, end) = (self.near, self.options.max_time);
         let along = TurningPlane { from: start.normal, to: start.normal };
@@ -212,8 +215,8 @@ impl<V: Vector> Search<'_, V> {
     }
 
     /// An instant at which the distance is locally least, to rounding, after one at which the bodies close in, and
-    /// before one at which they do not, if that is known. If the bodies may touch on the way, it is the instant at which
-    /// they do.
+    /// before one at which they do not, if that is known. If the bodies may touch on the way, it is the instant when they
+    /// do.
     fn descend(&mut self, mut low: Instant<V>, mut high: Option<Instant<V>>) -> Result<Instant<V>, Instant<V>> {
         let (zero, number, end) = (V::Scalar::ZERO, V::Scalar::from_f64, self.options.max_time);
         // The bodies are as near as they get when a point at their distance is, if it moves straight.
