@@ -47,7 +47,10 @@ fn touch_at_their_scale<V: Space>() {
         let answer = ask(&a.shape, &b.shape, at);
         let GrowthDistance { scale, lower, upper, point, normal, status, .. } = answer;
         assert_eq!(status, Status::Converged, "{what}: {answer:?}");
-        assert!(lower <= scale && scale <= upper && upper - lower <= 1e-11 * scale * (1.0 + scale), "{what}: {answer:?}");
+        assert!(
+            lower <= scale && scale <= upper && upper - lower <= 1e-11 * scale * (1.0 + scale),
+            "{what}: {answer:?}"
+        );
         let gap = |scale| {
             let (a, b) = (grown(a, center_a, scale), grown(b, center_b, scale));
             signed_distance(&a, &b, SignedDistanceOptions::default())
