@@ -40,6 +40,8 @@
 //! - *The same questions about a shape and an infinite floor or wall:* the methods of [`HalfSpace`].
 //!
 //! About a robot:
+//! - *Is it free at these joint values? How near does it come, and which joint helps?* [`Linkage::is_free`],
+//!   [`Linkage::clearance`].
 //! - *Is its path free, at every time, and what does it meet first?* [`Linkage::path`].
 //! - *The same along a spline?* [`Linkage::path_along`], with a [`JointTrajectory`] that you implement.
 //! - *How near does it come to anything on the way, when, and with which link?* [`Linkage::path_clearance`].
@@ -201,8 +203,9 @@ pub use intersects::{IntersectOptions, Intersection, intersects, intersects_with
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{LinearCast, LinearCastOptions, Motion, linear_cast, linear_cast_with};
 pub use linkage::{
-    FreeBox, FreeInterval, Joint, JointBounds, JointBox, JointBoxOutcome, JointKind, JointState, JointTrajectory, Link,
-    Linkage, LinkageError, Met, NearestOnPath, Path, PathClearance, PathContact, PathWorkspace,
+    ConfigurationWorkspace, FreeBox, FreeInterval, Joint, JointBounds, JointBox, JointBoxOutcome, JointKind,
+    JointState, JointTrajectory, Link, LinkClearance, LinkFrame, Linkage, LinkageError, Met, NearestOnPath, Path,
+    PathClearance, PathContact, PathWorkspace,
 };
 pub use motion::{
     ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate,

@@ -17,6 +17,7 @@ mod claims;
 mod closed_forms;
 mod closest_points;
 mod common;
+mod configuration;
 mod contact;
 mod curved_casts;
 mod data;

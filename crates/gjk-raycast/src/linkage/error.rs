@@ -37,6 +37,17 @@ pub enum LinkageError {
         /// The index of its joint.
         joint: usize,
     },
+    /// No link hangs from a joint that moves, nor from one that it carries:
+    /// [`check_joints`](crate::Linkage::check_joints).
+    CarriesNothing {
+        /// The index of the joint.
+        joint: usize,
+    },
+    /// There is no joint to tell the frame of.
+    NoSuchFrame {
+        /// The index that was asked for.
+        joint: usize,
+    },
     /// A body of a link has no finite ball around it.
     BodyNotFinite {
         /// The index of the link.
@@ -94,11 +105,15 @@ impl Display for LinkageError {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
             Self::ParentNotBefore { joint, parent } => {
-                write!(f, "joint {joint} hangs from joint {parent}, which does not come before it")
+                write!(f, "joint {joint} hangs from joint {parent}, which does not come before it, as in a loop")
             }
             Self::Pose { joint, why } => write!(f, "the pose of joint {joint} is none: {why}"),
             Self::Axis { joint } => write!(f, "the axis of joint {joint} is zero or not finite"),
             Self::NoSuchJoint { link, joint } => write!(f, "link {link} hangs from joint {joint}, which is not there"),
+            Self::CarriesNothing { joint } => {
+                write!(f, "joint {joint} moves, but no link hangs from it or from a joint that it carries")
+            }
+            Self::NoSuchFrame { joint } => write!(f, "there is no joint {joint}"),
             Self::BodyNotFinite { link, body } => write!(f, "body {body} of link {link} is not finite"),
             Self::NoSuchBody { link, body } => write!(f, "there is no body {body} of a link {link}"),
             Self::Pair { pair } => write!(f, "pair {pair} is not of two links of the linkage"),

@@ -12,15 +12,18 @@ const OF_VECTOR: f64 = 2.6;
 /// than `n/2`, so that the root of the sum of all squared entries is no more than `n²/2`.
 const OF_MATRIX: f64 = 4.5;
 
-/// A rotation followed by a translation, with a bound on the error of each.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct LinkFrame<V: Vector> {
-    pub(super) rotation: V::Matrix,
-    pub(super) translation: V,
+/// A frame that joints carry, as a rotation followed by a translation, with a bound on the error of each: it takes the
+/// coordinates of a point of the frame to those in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkFrame<V: Vector> {
+    /// The rotation.
+    pub rotation: V::Matrix,
+    /// The translation: where the origin of the frame is.
+    pub translation: V,
     /// How far the matrix may take a unit vector from where the exact rotation takes it.
-    pub(super) turn_error: V::Scalar,
+    pub turn_error: V::Scalar,
     /// How far the translation may be from the exact one.
-    pub(super) shift_error: V::Scalar,
+    pub shift_error: V::Scalar,
 }
 
 impl<V: Vector> LinkFrame<V> {

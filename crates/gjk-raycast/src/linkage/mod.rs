@@ -1,5 +1,6 @@
-//! Robots: bodies carried by joints, along a path, and anywhere in a box of joint values.
+//! Robots: bodies carried by joints, at one configuration, along a path, and anywhere in a box of joint values.
 
+mod configuration;
 mod error;
 mod frame;
 mod joint;
@@ -11,8 +12,11 @@ mod path_answer;
 mod path_clearance;
 mod robot;
 mod sweep;
+mod tree;
 
+pub use configuration::{ConfigurationWorkspace, LinkClearance};
 pub use error::LinkageError;
+pub use frame::LinkFrame;
 pub use joint::{Joint, JointKind, Link};
 pub use joint_box::{JointBox, JointBoxOutcome};
 pub use joint_trajectory::{JointBounds, JointState, JointTrajectory};

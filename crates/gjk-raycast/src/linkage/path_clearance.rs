@@ -5,7 +5,9 @@
 //! bracket: of other bodies it is only proved that they stay farther away. Before the first edge is looked at, the
 //! distances at three of its times tell what may count as near.
 
-use convex_support::{Scalar, ScalarOf, SupportMap};
+use core::ops::ControlFlow;
+
+use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::error::LinkageError;
@@ -14,7 +16,9 @@ use super::link_motion::{LinkMotion, PathEdge};
 use super::path_answer::{Met, NearestOnPath, PathClearance};
 use super::robot::{LinkView, Linkage};
 use super::sweep::{Near, PathWorkspace, Sweep};
-use crate::{Body, DistanceOptions, MotionClearance, MotionClearanceOptions, Scene, Status, distance};
+use crate::{
+    Body, DistanceOptions, MotionCastOptions, MotionClearance, MotionClearanceOptions, Scene, Status, distance,
+};
 
 /// By how much more than the distance at one time counts as near at first, since it is rounded.
 const ROOM: f64 = 1.0 + 1.0 / 1024.0;
@@ -91,28 +95,40 @@ impl<S: SupportMap> Linkage<S> {
             let (skeleton, tree, space) = (&self.skeleton, scene.tree(), &mut *workspace);
             let mut sweep = Sweep { skeleton, tree, edge, target: near_enough, space, end: duration, parts: 0 };
             sweep.run::<LinkageError>(&mut |near, motion, target| {
-                answer.casts += 1;
-                let next = if let Some(base) = self.skeleton.views[near.view].base {
+                if let Some(base) = self.skeleton.views[near.view].base {
+                    let met = Met::Link { link: base, body: near.other };
                     let base = Body::Convex(&self.bodies[base][near.other]);
-                    self.clearance_of(index, near, &motion, &base, options, *target)?
-                } else if let Some(obstacle) = scene.get(near.other) {
-                    self.clearance_of(index, near, &motion, obstacle, options, *target)?
-                } else {
-                    None
-                };
-                let is_met = next.is_some_and(|next| next.least.upper == zero);
-                let Some(next) = next.filter(|next| is_met || next.least.lower < *target) else { return Ok(duration) };
-                *target = next.least.lower;
-                match &mut answer.nearest {
-                    // Rounding leaves open whether they come nearer.
-                    Some(known) if !is_met && next.least.upper >= known.least.upper => {
-                        let is_narrow = known.least.upper - *target <= options.tolerance * known.least.upper;
-                        known.least.status = if is_narrow { known.least.status } else { Status::Stalled };
-                    }
-                    nearest => *nearest = Some(next),
+                    let next = self.clearance_of((index, met), near, &motion, &base, options, *target)?;
+                    return Ok(answer.see(next, target, options.tolerance).unwrap_or(duration));
                 }
-                // Only an earlier contact can be the first.
-                Ok(if is_met { next.least.time } else { duration })
+                let obstacle = near.other;
+                if let Some(body) = scene.get(obstacle) {
+                    let met = Met::Obstacle(obstacle);
+                    let next = self.clearance_of((index, met), near, &motion, body, options, *target)?;
+                    return Ok(answer.see(next, target, options.tolerance).unwrap_or(duration));
+                }
+                let (mut end, mut refused) = (duration, Ok(()));
+                if let Some(instance) = scene.instance(obstacle) {
+                    let time = near.to - near.from;
+                    let part = MotionCastOptions::new().with_max_time(time).with_target_distance(*target);
+                    let way = target.is_finite().then_some((&motion, &part));
+                    let shape = &self.bodies[self.skeleton.views[near.view].link][near.body];
+                    instance.each_on_way(shape, way, &mut |member, _, placed, _| {
+                        let met = Met::Member { obstacle, member };
+                        match self.clearance_of((index, met), near, &motion, placed, options, *target) {
+                            Ok(next) => {
+                                let at = answer.see(next, target, options.tolerance);
+                                end = at.map_or(end, |at| Float::min(end, at));
+                                ControlFlow::Continue(time)
+                            }
+                            Err(why) => {
+                                refused = Err(why);
+                                ControlFlow::Break(())
+                            }
+                        }
+                    });
+                }
+                refused.map(|()| end)
             })?;
             (near_enough, answer.parts) = (sweep.target, answer.parts + sweep.parts);
             if answer.nearest.is_some_and(|nearest| nearest.least.upper == zero) {
@@ -163,16 +179,15 @@ impl<S: SupportMap> Linkage<S> {
     /// The least distance of a body of a link from a body that may come near it on an edge, if it is less than a limit.
     fn clearance_of<O: SupportMap<Vector = S::Vector>, E: JointTrajectory<Scalar = ScalarOf<S>> + Copy>(
         &self,
-        edge: usize,
+        (edge, met): (usize, Met),
         near: &Near<ScalarOf<S>>,
         motion: &LinkMotion<'_, S::Vector, E>,
         against: &Body<O>,
         options: MotionClearanceOptions<S::Vector>,
         limit: ScalarOf<S>,
     ) -> Result<Option<NearestOnPath<S::Vector>>, LinkageError> {
-        let &Near { from, to, view, body, other } = near;
+        let &Near { from, to, view, body, .. } = near;
         let LinkView { link, base, .. } = self.skeleton.views[view];
-        let met = base.map_or(Met::Obstacle(other), |link| Met::Link { link, body: other });
         let options = MotionClearanceOptions { axis: None, max_time: to - from, ..options };
         let least = against.clearance_within(&self.bodies[link][body], motion, options, limit)?;
         if least.upper == ScalarOf::<S>::infinity() && least.lower == limit {
@@ -190,5 +205,30 @@ impl<S: SupportMap> Linkage<S> {
             }
         };
         Ok(Some(NearestOnPath { edge, link, body, met, least }))
+    }
+}
+
+impl<V: Vector> PathClearance<V> {
+    /// Counts the least distance of two bodies on an edge, where it may be less than the target, which it then becomes.
+    /// Returns the time on the edge after which nothing matters: only an earlier contact can be the first.
+    fn see(
+        &mut self,
+        next: Option<NearestOnPath<V>>,
+        target: &mut V::Scalar,
+        tolerance: V::Scalar,
+    ) -> Option<V::Scalar> {
+        self.casts += 1;
+        let is_met = next.is_some_and(|next| next.least.upper == Scalar::ZERO);
+        let next = next.filter(|next| is_met || next.least.lower < *target)?;
+        *target = next.least.lower;
+        match &mut self.nearest {
+            // Rounding leaves open whether they come nearer.
+            Some(known) if !is_met && next.least.upper >= known.least.upper => {
+                let is_narrow = known.least.upper - *target <= tolerance * known.least.upper;
+                known.least.status = if is_narrow { known.least.status } else { Status::Stalled };
+            }
+            nearest => *nearest = Some(next),
+        }
+        is_met.then_some(next.least.time)
     }
 }

@@ -69,14 +69,29 @@ pub struct Linkage<S: SupportMap> {
 pub(super) struct Skeleton<V: Vector> {
     /// The joints that move, each with the index of the moving joint that carries it, which comes before it.
     pub(super) stages: Vec<(Option<usize>, JointStage<V>)>,
+    /// All joints, as given.
+    pub(super) joints: Vec<JointPlace<V>>,
     pub(super) links: Vec<LinkBalls<V>>,
     /// One view of each link from the world, and after these one of each pair to be tested.
     pub(super) views: Vec<LinkView<V>>,
 }
 
+/// A joint, and where it is.
+#[derive(Clone, Debug)]
+pub(super) struct JointPlace<V: Vector> {
+    pub(super) joint: Joint<V>,
+    /// The last moving joint up to and including it, and its own frame as seen from there.
+    pub(super) carrier: Option<usize>,
+    pub(super) fixed: LinkFrame<V>,
+    /// Whether a link hangs from it or from a joint that it carries.
+    pub(super) carries: bool,
+}
+
 /// A ball around each body of a link, in its own frame, and one around all of them.
 #[derive(Clone, Debug)]
 pub(super) struct LinkBalls<V: Vector> {
+    /// The joint that carries it.
+    pub(super) joint: Option<usize>,
     pub(super) each: Vec<BoundingSphere<V>>,
     pub(super) all: BoundingSphere<V>,
 }
@@ -99,29 +114,35 @@ impl<S: SupportMap> Linkage<S> {
         links: impl IntoIterator<Item = Link<S>>,
     ) -> Result<Self, LinkageError> {
         let mut stages: Vec<(Option<usize>, JointStage<S::Vector>)> = Vec::new();
-        // For each joint, the index of the last moving joint up to and including it, and its own frame as seen from
-        // there.
-        let mut places: Vec<(Option<usize>, LinkFrame<S::Vector>)> = Vec::new();
-        for (index, Joint { parent, pose, kind }) in joints.into_iter().enumerate() {
+        let mut places: Vec<JointPlace<S::Vector>> = Vec::new();
+        for (index, joint) in joints.into_iter().enumerate() {
+            let Joint { parent, pose, kind } = joint;
             let (before, frame) = match parent {
                 None => (None, LinkFrame::WORLD),
-                Some(parent) => *places.get(parent).ok_or(LinkageError::ParentNotBefore { joint: index, parent })?,
+                Some(parent) => {
+                    let of = places.get(parent).ok_or(LinkageError::ParentNotBefore { joint: index, parent })?;
+                    (of.carrier, of.fixed)
+                }
             };
             let here = LinkFrame::at(pose).map_err(|why| LinkageError::Pose { joint: index, why })?;
-            let fixed = frame.then(&here);
-            if matches!(kind, JointKind::Fixed) {
-                places.push((before, fixed));
-                continue;
+            let mut place = JointPlace { joint, carrier: before, fixed: frame.then(&here), carries: false };
+            if !matches!(kind, JointKind::Fixed) {
+                let stage =
+                    JointStage::new(place.fixed, kind, stages.len()).ok_or(LinkageError::Axis { joint: index })?;
+                (place.carrier, place.fixed) = (Some(stages.len()), LinkFrame::WORLD);
+                stages.push((before, stage));
             }
-            let stage = JointStage::new(fixed, kind, stages.len()).ok_or(LinkageError::Axis { joint: index })?;
-            places.push((Some(stages.len()), LinkFrame::WORLD));
-            stages.push((before, stage));
+            places.push(place);
         }
         let (mut balls, mut views, mut all) = (Vec::new(), Vec::new(), Vec::new());
         for (link, Link { joint, bodies }) in links.into_iter().enumerate() {
             let (stage, tail) = match joint {
                 None => (None, LinkFrame::WORLD),
-                Some(joint) => *places.get(joint).ok_or(LinkageError::NoSuchJoint { link, joint })?,
+                Some(joint) => {
+                    let place = places.get_mut(joint).ok_or(LinkageError::NoSuchJoint { link, joint })?;
+                    place.carries = true;
+                    (place.carrier, place.fixed)
+                }
             };
             let way = core::iter::successors(stage, |&index: &usize| stages[index].0);
             let mut way: Vec<_> = way.map(|index| stages[index].1.clone()).collect();
@@ -132,10 +153,16 @@ impl<S: SupportMap> Linkage<S> {
                 return Err(LinkageError::BodyNotFinite { link, body });
             }
             views.push(LinkView { link, base: None, route: Route::new(way, tail) });
-            balls.push(LinkBalls { all: ball_around(&each), each });
+            balls.push(LinkBalls { joint, all: ball_around(&each), each });
             all.push(bodies);
         }
-        Ok(Self { skeleton: Skeleton { stages, links: balls, views }, bodies: all })
+        // Parents come first, so that this goes from the tips of the tree to its root.
+        for index in (0..places.len()).rev() {
+            if let Some(parent) = places[index].joint.parent {
+                places[parent].carries |= places[index].carries;
+            }
+        }
+        Ok(Self { skeleton: Skeleton { stages, joints: places, links: balls, views }, bodies: all })
     }
 
     /// The linkage with pairs of links, by their indices, to be tested against one another: those that may meet.
@@ -150,6 +177,18 @@ impl<S: SupportMap> Linkage<S> {
             self.skeleton.views.push(LinkView { link: links[0], base: Some(links[1]), route });
         }
         Ok(self)
+    }
+
+    /// Whether each joint that moves carries a link. The value of one that does not changes no answer; mostly the index
+    /// of a parent, or of the joint of a link, is wrong. A fixed joint may carry nothing, and a link may have no bodies.
+    ///
+    /// # Errors
+    /// [`LinkageError::CarriesNothing`] for the first joint that carries no link.
+    pub fn check_joints(&self) -> Result<(), LinkageError> {
+        match self.skeleton.joints.iter().position(JointPlace::is_idle) {
+            Some(joint) => Err(LinkageError::CarriesNothing { joint }),
+            None => Ok(()),
+        }
     }
 
     /// The number of joints that move, which is the number of values of a waypoint.
@@ -177,10 +216,21 @@ impl<S: SupportMap> Linkage<S> {
     /// [values](Self::values), or too large.
     pub fn placed(&self, link: usize, body: usize, values: &[ScalarOf<S>]) -> Result<Posed<&S>, LinkageError> {
         self.check(0, values)?;
-        let shape = self.bodies(link).get(body).ok_or(LinkageError::NoSuchBody { link, body })?;
+        if self.bodies(link).len() <= body {
+            return Err(LinkageError::NoSuchBody { link, body });
+        }
         let (route, edge) = (&self.skeleton.views[link].route, PathEdge { from: values, to: values });
-        let (_, frame) = route.place(edge, Scalar::ZERO);
-        let placed = Posed::from_matrix(shape, frame.rotation, frame.translation);
+        self.placed_at(link, body, &route.place(edge, Scalar::ZERO).1)
+    }
+
+    /// A body that exists, in the frame of its link.
+    pub(super) fn placed_at(
+        &self,
+        link: usize,
+        body: usize,
+        frame: &LinkFrame<S::Vector>,
+    ) -> Result<Posed<&S>, LinkageError> {
+        let placed = Posed::from_matrix(&self.bodies[link][body], frame.rotation, frame.translation);
         placed.map_err(|_| LinkageError::BodyNotFinite { link, body })
     }
 
@@ -264,18 +314,32 @@ impl<S: SupportMap> Linkage<S> {
         self.check(0, edge.from).and(self.check(1, edge.to)).ok()?;
         let other = if let Met::Link { link, .. } = met { Some(link) } else { None };
         let (one, mut rises) = (ScalarOf::<S>::ONE, edge.from.iter().map(|_| Scalar::ZERO).collect::<Vec<_>>());
-        for (link, sign) in [(Some(link), one), (other, -one)] {
-            let mut moving = Moving::WORLD;
+        for (link, normal) in [(Some(link), normal?), (other, -normal?)] {
             let Some(link) = link else { continue };
-            for stage in &self.skeleton.views.get(link)?.route.stages {
-                moving = moving.beyond(stage, edge.state(stage.column, time));
-                rises[stage.column] += stage.rise(stage.placed(&moving.frame), normal?, point) * sign;
-            }
+            self.add_rises(link, edge, time, [normal, point], &mut rises).ok()?;
         }
         let rates = edge.to.iter().zip(edge.from).map(|(to, from)| *to - *from);
         let closing = rates.zip(&rises).fold(ScalarOf::<S>::ZERO, |sum, (rate, rise)| sum - rate * *rise);
         let by_values = |rise: ScalarOf<S>| [one - time, time].map(|share| rise / closing * share);
         (closing > Scalar::ZERO).then(|| rises.into_iter().map(by_values).collect())
+    }
+
+    /// Adds how much each joint, per unit of its value, lifts a point of a link along a normal at a time of an edge.
+    pub(super) fn add_rises(
+        &self,
+        link: usize,
+        edge: PathEdge<'_, ScalarOf<S>>,
+        time: ScalarOf<S>,
+        [normal, point]: [S::Vector; 2],
+        rises: &mut [ScalarOf<S>],
+    ) -> Result<(), LinkageError> {
+        let mut moving = Moving::WORLD;
+        let view = self.skeleton.views.get(link).ok_or(LinkageError::NoSuchBody { link, body: 0 })?;
+        for stage in &view.route.stages {
+            moving = moving.beyond(stage, edge.state(stage.column, time));
+            rises[stage.column] += stage.rise(stage.placed(&moving.frame), normal, point);
+        }
+        Ok(())
     }
 
     /// Checks that these are finite values, one for each joint that moves.
@@ -287,6 +351,13 @@ impl<S: SupportMap> Linkage<S> {
             Some(value) => Err(LinkageError::Value { waypoint, value }),
             None => Ok(()),
         }
+    }
+}
+
+impl<V: Vector> JointPlace<V> {
+    /// Whether it moves, and carries no link.
+    pub(super) fn is_idle(&self) -> bool {
+        !self.carries && !matches!(self.joint.kind, JointKind::Fixed)
     }
 }
 
