@@ -69,6 +69,9 @@ impl<V: Vector> SupportMap for Ball<V> {
             return closely(self, line);
         }
         let line = line.sweeping(self.radius);
+        if let Some(missed) = NearLine::clear_miss(line) {
+            return Some(missed);
+        }
         NearLine::new(line, V::ZERO, line.radius)?.ball(line.radius)
     }
 
