@@ -29,8 +29,10 @@ use crate::{Aabb, Vector};
 #[derive(Clone, Debug)]
 pub struct NearestPairs<'t, V: Vector> {
     among: PairSearch<'t, V>,
-    /// The pairs still to be looked into, each as a number with the second of the pair: the least bound on top, and of
-    /// equals the deepest, so that the first pair of items is found soon where all boxes overlap.
+    /// The pairs still to be looked into whose bound is 0, the last one first: that one is deepest, so that the first
+    /// pair of items is found soon where all boxes overlap, and many such pairs need no order.
+    touching: Vec<Pair>,
+    /// The others, each as a number with the second of the pair: the least bound on top.
     queue: BinaryHeap<(u64, Link)>,
     nodes: usize,
 }
@@ -51,7 +53,7 @@ impl<V: Vector> Bvh<V> {
 
 impl<'t, V: Vector> NearestPairs<'t, V> {
     fn new(among: PairSearch<'t, V>) -> Self {
-        let mut pairs = Self { among, queue: BinaryHeap::new(), nodes: 0 };
+        let mut pairs = Self { among, touching: Vec::new(), queue: BinaryHeap::new(), nodes: 0 };
         pairs.push(0.0, among.start);
         pairs
     }
@@ -62,8 +64,7 @@ impl<'t, V: Vector> NearestPairs<'t, V> {
         let limit = finite(limit)?;
         let nowhere = Boxes::EMPTY.get(0);
         let end = coarse_limit(&self.coarse(&nowhere), limit);
-        while let Some((number, b)) = self.queue.pop() {
-            let (a, bound) = Link::with_bound_descending(number);
+        while let Some(((a, b), bound)) = self.pop() {
             if bound > end {
                 break;
             }
@@ -78,7 +79,7 @@ impl<'t, V: Vector> NearestPairs<'t, V> {
                 self.expand((a, b), end);
             }
         }
-        self.queue.clear();
+        (self.touching, self.queue) = Default::default();
         None
     }
 
@@ -91,17 +92,34 @@ impl<'t, V: Vector> NearestPairs<'t, V> {
     /// What is still to be searched, in so many parts of about equal promise, for as many threads.
     #[must_use]
     pub fn deal(self, parts: usize) -> Vec<Self> {
-        let mut dealt: Vec<_> =
-            (0..parts.max(1)).map(|_| Self { queue: BinaryHeap::new(), nodes: 0, ..self }).collect();
+        let (parts, among) = (parts.max(1), self.among);
+        let nothing = |_| Self { among, touching: Vec::new(), queue: BinaryHeap::new(), nodes: 0 };
+        let mut dealt: Vec<_> = (0..parts).map(nothing).collect();
         dealt[0].nodes = self.nodes;
         for (i, pair) in self.queue.into_sorted_vec().into_iter().rev().enumerate() {
-            dealt[i % parts.max(1)].queue.push(pair);
+            dealt[i % parts].queue.push(pair);
+        }
+        for (i, pair) in self.touching.into_iter().enumerate() {
+            dealt[i % parts].touching.push(pair);
         }
         dealt
     }
 
     fn push(&mut self, bound: f32, (a, b): Pair) {
-        self.queue.push((a.after_descending(bound), b));
+        if bound == 0.0 {
+            self.touching.push((a, b));
+        } else {
+            self.queue.push((a.after_descending(bound), b));
+        }
+    }
+
+    fn pop(&mut self) -> Option<(Pair, f32)> {
+        if let Some(pair) = self.touching.pop() {
+            return Some((pair, 0.0));
+        }
+        let (number, b) = self.queue.pop()?;
+        let (a, bound) = Link::with_bound_descending(number);
+        Some(((a, b), bound))
     }
 
     /// The bound for a box in the frame of the second tree.

@@ -115,7 +115,7 @@ fn of_equal_pairs_the_lowest_indices_whatever_the_order() {
     scene.insert(ball(500.0)).unwrap();
     assert_eq!(pair(scene.all().nearest_between(&other, options)), Some((1, 1, 0.0)), "another one is 0");
     // They all close up at the same time.
-    let motion = |body: usize| RigidMotion::translation(DVec3::X * if body % 2 == 0 { 0.25 } else { -0.25 });
+    let motion = |body: usize| RigidMotion::translation(DVec3::X * if body.is_multiple_of(2) { 0.25 } else { -0.25 });
     let first = scene.all().first_contact(&motion, MotionCastOptions::new().with_max_time(9.0)).unwrap();
     assert_eq!(first.first.map(|first| (first.a, first.b, first.impact.time)), Some((2, 3, 2.0)), "of equal times");
     assert!(first.work.tested < 40, "neighbours alone are cast");
