@@ -108,10 +108,11 @@ mod vector;
 pub use glam;
 
 pub use bounds::{Aabb, BoundingSphere, bounding_box, bounding_sphere};
+pub use bvh::nearest_pairs::NearestPairs;
 pub use bvh::pairs::PairSearch;
 pub use bvh::{
-    Bound, BoxDistance, Boxes, Bvh, CoarseBound, CoarseBoxDistance, CoarseSweptBox, CoarseUnit, Frame, NearestPairs,
-    SweptBox, WIDTH, outer_box,
+    Bound, BoxDistance, Boxes, Bvh, CoarseBound, CoarseBoxDistance, CoarseSweptBox, CoarseUnit, Frame, SweptBox, WIDTH,
+    outer_box,
 };
 pub use closest_point::closest_point;
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};

@@ -221,10 +221,11 @@ pub use ray_casts::{RayEntry, ray_casts, ray_entries_into};
 pub use ray_casts::{par_ray_casts, par_ray_entries_into};
 pub use ray_exit::{RayExit, ray_exit};
 pub use scene::among::Among;
+pub use scene::handle::BodyHandle;
 pub use scene::{
-    Body, BodyContact, BodyDistance, BodyHandle, BodyHit, BodySignedDistance, Group, Instance, PairContact,
-    PairDistance, PairImpact, Scene, SceneAnyHit, SceneAnyWithin, SceneCast, SceneDistance, SceneError,
-    SceneFirstContact, SceneHits, SceneLinearCast, SceneMotionCast, ScenePair, SceneRayCast, SceneSignedDistance, Work,
+    Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, Group, Instance, PairContact, PairDistance,
+    PairImpact, Scene, SceneAnyHit, SceneAnyWithin, SceneCast, SceneDistance, SceneError, SceneFirstContact, SceneHits,
+    SceneLinearCast, SceneMotionCast, ScenePair, SceneRayCast, SceneSignedDistance, Work,
 };
 pub use separation::{Distance, SignedDistance, SignedDistanceOptions};
 pub use signed_distance::{signed_distance, signed_distance_with};

@@ -149,7 +149,7 @@ fn the_clearance_is_that_of_all_pairs_to_the_last_bit() {
         kinds[match found.met {
             Met::Link { .. } => 0,
             Met::Obstacle(12) => 1,
-            Met::Obstacle(_) => 2,
+            Met::Obstacle(_) | Met::Member { .. } => 2,
         }] += 1;
 
         // It is free to any smaller distance, and to no greater one.

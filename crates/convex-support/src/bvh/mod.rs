@@ -4,7 +4,7 @@ mod bound;
 mod build;
 mod change;
 mod frame;
-mod nearest_pairs;
+pub(crate) mod nearest_pairs;
 mod node;
 mod outer_box;
 pub(crate) mod pairs;
@@ -16,7 +16,6 @@ use crate::{Aabb, Vector};
 
 pub use self::bound::{Bound, BoxDistance, CoarseBound, CoarseBoxDistance, CoarseSweptBox, SweptBox};
 pub use self::frame::{CoarseUnit, Frame};
-pub use self::nearest_pairs::NearestPairs;
 pub use self::node::{Boxes, WIDTH};
 use self::node::{Node, Slot};
 pub use self::outer_box::outer_box;

@@ -21,7 +21,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::first_contact::Search;
+use super::first_contact::{Falling, Search};
 use super::instant::{Instant, Limits};
 use super::trajectory::TurningPlane;
 
@@ -39,18 +39,6 @@ const DESCENT: usize = 60;
 const IDLE_STEPS_DOWN: u8 = 2;
 /// If the search has used half of its looks, the tolerance is no less than this.
 const LOOSE: f64 = 1.0 / 1024.0;
-
-/// The target distance that falls.
-#[derive(Clone, Copy)]
-pub(super) struct Falling<V: Vector> {
-    /// The target. Up to the time that the search has come to, the bodies are proved to be farther apart.
-    pub(super) target: V::Scalar,
-    /// By how much the target falls where the bodies are not known to be any nearer than before.
-    slack: V::Scalar,
-    /// [`Search::fall_on`] and [`Search::farthest`], which a search for a first contact does without.
-    pub(super) go_on: fn(&mut Search<'_, V>),
-    pub(super) farthest: fn(&Search<'_, V>, V::Scalar) -> V::Scalar,
-}
 
 impl<V: Vector> Search<'_, V> {
     /// Begins with a target that falls from the distance at the start, where the bodies are apart, or from a limit if

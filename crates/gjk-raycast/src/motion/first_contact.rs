@@ -9,7 +9,6 @@ use convex_support::numerics::range::is_comfortable;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::falling::Falling;
 use super::free_interval::acceleration_if_free;
 use super::instant::{Approach, Base, Instant, Limits, NEAR_IN_MOTION, Stage};
 use super::trajectory::TurningPlane;
@@ -132,6 +131,18 @@ pub struct MotionIterate<V: Vector> {
     pub lower: V::Scalar,
     /// The bodies have a point in common at this time; infinite if none is known.
     pub upper: V::Scalar,
+}
+
+/// The target distance that falls, in a search for the [least distance](super::falling).
+#[derive(Clone, Copy)]
+pub(super) struct Falling<V: Vector> {
+    /// The target. Up to the time that the search has come to, the bodies are proved to be farther apart.
+    pub(super) target: V::Scalar,
+    /// By how much the target falls where the bodies are not known to be any nearer than before.
+    pub(super) slack: V::Scalar,
+    /// [`Search::fall_on`] and [`Search::farthest`], which a search for a first contact does without.
+    pub(super) go_on: fn(&mut Search<'_, V>),
+    pub(super) farthest: fn(&Search<'_, V>, V::Scalar) -> V::Scalar,
 }
 
 /// The state of the search. Up to the time of [`near`](Self::near) the bodies are proved to be apart.

@@ -4,9 +4,10 @@ use core::ops::ControlFlow;
 
 use convex_support::{Scalar, ScalarOf, SupportMap};
 
+use super::answers::OfPair;
+use super::asked::Asked;
 use super::bounds::Question;
-use super::instance::{Asked, Id};
-use super::pairs::OfPair;
+use super::instance::Id;
 use super::{Body, PairContact, Scene, SceneDistance, SceneRayCast, Slot, Work};
 use crate::{Contact, DistanceOptions, HalfSpace, Ray, RayCastError, RayCastOptions};
 

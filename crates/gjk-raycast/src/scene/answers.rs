@@ -354,3 +354,26 @@ pub(super) fn reuse<T>(list: &mut Vec<T>) -> &mut Vec<T> {
     list.clear();
     list
 }
+
+/// An element of a list of pairs.
+pub(super) trait OfPair {
+    fn ids(&self) -> [Id; 2];
+}
+
+impl<V: Vector> OfPair for PairDistance<V> {
+    fn ids(&self) -> [Id; 2] {
+        [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
+    }
+}
+
+impl<V: Vector> OfPair for PairImpact<V> {
+    fn ids(&self) -> [Id; 2] {
+        [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
+    }
+}
+
+impl<V: Vector> OfPair for PairContact<V> {
+    fn ids(&self) -> [Id; 2] {
+        [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
+    }
+}

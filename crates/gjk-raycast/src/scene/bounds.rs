@@ -9,7 +9,7 @@ use convex_support::{
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
-use super::instance::InstanceFrame;
+use super::instance_frame::InstanceFrame;
 use crate::{HalfSpace, MotionCastOptions, MovingBall, Trajectory};
 
 /// A question to a scene, whose bound can be taken into the frame of an instance. There it is at most the bound of each

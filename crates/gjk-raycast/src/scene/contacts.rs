@@ -7,9 +7,9 @@ use convex_support::{Point, Scalar as _, ScalarOf, SupportMap, Vector as _};
 use num_traits::Float as _;
 
 use super::among::Among;
-use super::answers::{BodyContact, PairContact, Work, reuse};
-use super::instance::{Id, asked, asked_pair};
-use super::pairs::OfPair;
+use super::answers::{BodyContact, OfPair, PairContact, Work, reuse};
+use super::asked::{asked, asked_pair};
+use super::instance::Id;
 use super::{Body, Scene};
 use crate::contact::contact_of;
 use crate::{Contact, SignedDistanceOptions, signed_distance};

@@ -11,9 +11,10 @@ use super::among::Among;
 use super::answers::{
     BodyHit, SceneAnyHit, SceneCast, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, reuse,
 };
+use super::asked::{Asked, asked};
 use super::body::seen_from;
 use super::bounds::{Moving, MovingBalls, Question};
-use super::instance::{Asked, Id, asked};
+use super::instance::Id;
 use crate::motion::{check, checked};
 use crate::{
     Cast, ChainMotion, Impact, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastError, RayCastOptions, RayHit,

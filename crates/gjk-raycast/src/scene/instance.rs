@@ -20,17 +20,14 @@ use alloc::vec::Vec;
 use core::fmt;
 use core::ops::ControlFlow;
 
-use convex_support::{
-    Aabb, BoxDistance, Bvh, Matrix as _, Point, Posed, Scalar, ScalarOf, SupportMap, Vector, outer_box,
-};
+use convex_support::{Aabb, BoxDistance, Bvh, Matrix as _, Point, Posed, Scalar, SupportMap, Vector, outer_box};
 use num_traits::Float as _;
 
+use super::body::Body;
 use super::bounds::{MovingBalls, Question};
-use super::{Body, Scene, SceneError, Slot};
+use super::error::SceneError;
+use super::instance_frame::{InstanceFrame, room};
 use crate::{MotionCastOptions, Pose, Trajectory};
-
-/// How deep groups may be nested.
-const MAX_LEVELS: usize = 16;
 
 /// A body of a question, by its index, and a member of it if it is an instance. The order is that of indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -52,82 +49,16 @@ impl Id {
 /// A member of an instance where it is in the world.
 pub(crate) type Placed<'m, V> = Body<Posed<&'m (dyn SupportMap<Vector = V> + 'm)>>;
 
-/// What a single query is about: a body of the scene, or a member of an instance with its box.
-pub(super) enum Asked<'a, 'm, S: SupportMap> {
-    Own(&'a Body<S>),
-    Member(&'a Placed<'m, S::Vector>, Aabb<S::Vector>),
-}
-
-impl<S: SupportMap> Clone for Asked<'_, '_, S> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<S: SupportMap> Copy for Asked<'_, '_, S> {}
-
-/// The same expression for either kind of body.
-macro_rules! asked {
-    ($asked:expr, $body:ident => $answer:expr) => {
-        match $asked {
-            $crate::scene::instance::Asked::Own($body) => $answer,
-            $crate::scene::instance::Asked::Member($body, _) => $answer,
-        }
-    };
-}
-
-/// The same for two of them.
-macro_rules! asked_pair {
-    ($a:ident, $b:ident => $answer:expr) => {
-        $crate::scene::instance::asked!($a, $a => $crate::scene::instance::asked!($b, $b => $answer))
-    };
-}
-pub(super) use {asked, asked_pair};
-
-impl<S: SupportMap> Slot<S> {
-    /// Calls `tell` for the body, which has this index and bound, or for each member of the instance whose box has a
-    /// bound of at most `limit`. The call returns the limit from then on, or breaks off.
-    pub(super) fn each_member<Q: Question<S::Vector>>(
-        &self,
-        (index, from): (usize, ScalarOf<S>),
-        question: &Q,
-        limit: ScalarOf<S>,
-        nodes: &mut usize,
-        tell: &mut impl FnMut(Id, ScalarOf<S>, Asked<'_, '_, S>) -> ControlFlow<(), ScalarOf<S>>,
-    ) -> ControlFlow<(), ScalarOf<S>> {
-        match self {
-            Self::Body(body) => tell(Id::of(index), from, Asked::Own(body)),
-            Self::Instance(instance) => {
-                instance.search(question, (from, limit), nodes, &mut |number, from, placed, around| {
-                    tell(Id { body: index, member: Some(number) }, from, Asked::Member(placed, around))
-                })
-            }
-        }
-    }
-}
-
 /// A scene whose kind of shape is forgotten.
-trait Members<V: Vector>: Send + Sync {
+pub(super) trait Members<V: Vector>: Send + Sync {
     fn tree(&self) -> &Bvh<V>;
     fn member(&self, index: usize) -> Option<Member<'_, V>>;
 }
 
-enum Member<'m, V: Vector> {
+/// A body of such a scene.
+pub(super) enum Member<'m, V: Vector> {
     Shape(&'m (dyn SupportMap<Vector = V> + 'm)),
     Instance(&'m Instance<V>),
-}
-
-impl<S: SupportMap + Send + Sync> Members<S::Vector> for Scene<S> {
-    fn tree(&self) -> &Bvh<S::Vector> {
-        &self.tree
-    }
-
-    fn member(&self, index: usize) -> Option<Member<'_, S::Vector>> {
-        match self.slot(index)? {
-            Slot::Body(body) => Some(Member::Shape(body.convex()?)),
-            Slot::Instance(instance) => Some(Member::Instance(instance)),
-        }
-    }
 }
 
 /// A scene that can be a body of other scenes, as often as wanted: each [instance](Scene::insert_group) has its own
@@ -154,14 +85,14 @@ impl<S: SupportMap + Send + Sync> Members<S::Vector> for Scene<S> {
 /// ```
 #[derive(Clone)]
 pub struct Group<V: Vector> {
-    scene: Arc<dyn Members<V>>,
+    pub(super) scene: Arc<dyn Members<V>>,
     /// The number of the first member of each body; empty if every body is one member, of the same number.
-    first: Arc<[usize]>,
+    pub(super) first: Arc<[usize]>,
     /// One more than the greatest number of a member, and how many there are.
-    end: usize,
-    len: usize,
-    around: Aabb<V>,
-    levels: usize,
+    pub(super) end: usize,
+    pub(super) len: usize,
+    pub(super) around: Aabb<V>,
+    pub(super) levels: usize,
 }
 
 impl<V: Vector> fmt::Debug for Group<V> {
@@ -171,43 +102,6 @@ impl<V: Vector> fmt::Debug for Group<V> {
 }
 
 impl<V: Vector> Group<V> {
-    /// The group of a scene's bodies; or of a scene that is shared already, such as a mesh that is asked elsewhere by
-    /// its triangles.
-    ///
-    /// Members are named by numbers from zero, in the order of the bodies' indices. If the scene has no instances, the
-    /// number of a member is the index of the body; for nested groups, [`path`](Self::path) says where the member is.
-    ///
-    /// # Errors
-    /// [`SceneError::EmptyGroup`], also for a mesh without triangles; [`SceneError::UnboundedMember`] for the first
-    /// half-space; [`SceneError::TooDeep`] if groups are nested more than 16 deep, or have too many members to count.
-    pub fn new<S>(scene: impl Into<Arc<Scene<S>>>) -> Result<Self, SceneError>
-    where
-        S: SupportMap<Vector = V> + Send + Sync + 'static,
-    {
-        let scene: Arc<Scene<S>> = scene.into();
-        if let Some(&member) = scene.half_spaces.first() {
-            return Err(SceneError::UnboundedMember { member });
-        }
-        let around = scene.tree.around().ok_or(SceneError::EmptyGroup)?;
-        let (mut first, mut end, mut levels) = (Vec::new(), 0_usize, 0);
-        for slot in &scene.bodies {
-            first.push(end);
-            let (members, inner) = match slot {
-                Some(Slot::Instance(instance)) => (instance.group.end, instance.group.levels),
-                _ => (1, 0),
-            };
-            end = end.checked_add(members).ok_or(SceneError::TooDeep)?;
-            levels = levels.max(inner + 1);
-        }
-        if levels > MAX_LEVELS {
-            return Err(SceneError::TooDeep);
-        }
-        if levels == 1 {
-            first.clear();
-        }
-        Ok(Self { first: first.into(), end, len: scene.members, around, levels, scene })
-    }
-
     /// The number of members, those of nested groups included.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -444,45 +338,4 @@ impl<V: Vector> Chain<'_, V> {
             None => Some(tell(&Body::Convex(posed))),
         }
     }
-}
-
-/// The frame of an instance, as questions see it.
-pub(crate) struct InstanceFrame<V: Vector> {
-    rotation: V::Matrix,
-    translation: V,
-    reach: V::Scalar,
-}
-
-impl<V: Vector> InstanceFrame<V> {
-    /// A vector of the world.
-    pub(super) fn vector(&self, v: V) -> V {
-        self.rotation.transpose_mul(v)
-    }
-
-    /// A point of the world; its error, and that of members in the world, are within the [room](Self::room) of it.
-    pub(super) fn point(&self, x: V) -> V {
-        self.rotation.transpose_mul(x - self.translation)
-    }
-
-    /// The half extents of a box along the axes of the frame around one along the world's.
-    pub(super) fn half_extents(&self, half: V) -> V {
-        V::from_fn(|i| self.rotation.col(i).abs().dot(half))
-    }
-
-    /// The size of the region that a question about points this far from the world's origin has to be enlarged by.
-    pub(super) fn room(&self, x: V) -> V::Scalar {
-        room(self.reach + x.abs().dot(V::ONE))
-    }
-
-    /// The offset along a normal of the world.
-    pub(super) fn offset(&self, normal: V, offset: V::Scalar) -> V::Scalar {
-        offset - normal.dot(self.translation)
-    }
-}
-
-/// Room for the rounding of poses. The image of a point loses a few ε of the coordinates, and so do the single query of
-/// a member and the [box](outer_box) of it: 32 ε of the numbers that define it, which are no more than its coordinates.
-/// Taking a question back loses as much.
-fn room<S: Scalar>(reach: S) -> S {
-    S::from_f64(128.0) * S::EPSILON * reach
 }

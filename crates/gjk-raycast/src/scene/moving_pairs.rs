@@ -8,12 +8,13 @@ use convex_support::{Aabb, Ball, Bound as _, BoxDistance, Bvh, Posed, Scalar, Sc
 use num_traits::Float;
 
 use super::among::Among;
-use super::answers::{PairImpact, SceneFirstContact, reuse};
+use super::answers::{OfPair as _, PairImpact, SceneFirstContact, reuse};
+use super::asked::{Asked, asked, asked_pair};
 use super::body::seen_from;
 use super::bounds::{HeightBound, MovingBalls, swept};
 use super::hits::swept_shape;
-use super::instance::{Asked, Id, asked, asked_pair};
-use super::pairs::{OfPair as _, Pairing};
+use super::instance::Id;
+use super::pairs::Pairing;
 use super::{Body, Scene, Slot};
 use crate::motion::{check, checked};
 use crate::{ChainMotion, Impact, LinearCastOptions, Motion, MotionCast, MotionCastOptions, RayCastError, RigidMotion};

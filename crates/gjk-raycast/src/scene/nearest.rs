@@ -9,7 +9,8 @@ use num_traits::Float;
 
 use super::among::Among;
 use super::answers::{BodyDistance, BodySignedDistance, SceneDistance, SceneSignedDistance, Work, reuse};
-use super::instance::{Asked, Id, asked};
+use super::asked::{Asked, asked};
+use super::instance::Id;
 use crate::{DistanceOptions, SignedDistanceOptions};
 
 impl<S: SupportMap> Among<'_, S> {

@@ -12,8 +12,9 @@ use super::among::Among;
 #[cfg(feature = "rayon")]
 use super::answers::Work;
 use super::answers::{PairDistance, SceneAnyWithin, ScenePair};
+use super::asked::{Asked, asked, asked_pair};
 use super::bounds::HeightBound;
-use super::instance::{Asked, Id, asked, asked_pair};
+use super::instance::Id;
 use super::nearest::distance_of as distance_of_boxes;
 use super::pairs::{Pairing, TestPair, beside_box, distance_of};
 use crate::{Distance, DistanceOptions};

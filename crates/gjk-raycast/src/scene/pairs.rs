@@ -6,9 +6,10 @@ use core::ops::ControlFlow;
 use convex_support::{Aabb, BoxDistance, Bvh, PairSearch, Scalar, ScalarOf, SupportMap, Vector};
 
 use super::among::Among;
-use super::answers::{PairContact, PairDistance, PairImpact, Work, reuse};
+use super::answers::{OfPair, PairDistance, Work, reuse};
+use super::asked::{Asked, asked_pair};
 use super::bounds::{HeightBound, Question};
-use super::instance::{Asked, Id, asked_pair};
+use super::instance::Id;
 use super::{Body, Scene, Slot};
 use crate::{Distance, DistanceOptions, distance};
 
@@ -122,29 +123,6 @@ impl<S: SupportMap> Among<'_, S> {
             asking.pairing.count(work);
         }
         asking.finish()
-    }
-}
-
-/// An element of a list of pairs.
-pub(super) trait OfPair {
-    fn ids(&self) -> [Id; 2];
-}
-
-impl<V: Vector> OfPair for PairDistance<V> {
-    fn ids(&self) -> [Id; 2] {
-        [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
-    }
-}
-
-impl<V: Vector> OfPair for PairImpact<V> {
-    fn ids(&self) -> [Id; 2] {
-        [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
-    }
-}
-
-impl<V: Vector> OfPair for PairContact<V> {
-    fn ids(&self) -> [Id; 2] {
-        [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
     }
 }
 
