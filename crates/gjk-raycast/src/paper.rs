@@ -78,7 +78,7 @@ pub trait SubDistance<V: Vector> {
 
 impl<V: Vector> SubDistance<V> for SubAlgorithm {
     fn closest(&self, points: &[V]) -> Option<SimplexPoint<V>> {
-        let found = SubAlgorithm::closest(*self, points, V::DIM)?;
+        let found = Self::closest(*self, points, V::DIM)?;
         let mut weights = [V::Scalar::ZERO; MAX_POINTS];
         let corners = (0..points.len()).filter(|&i| found.face.has(i));
         corners.zip(found.weights).for_each(|(i, weight)| weights[i] = weight);
@@ -107,7 +107,7 @@ pub fn iterative_ray_cast<V: Vector>(
             cast.hit = Some(false);
             break;
         }
-        cast.lambda = cast.lambda - n.length_squared() / n.dot(r);
+        cast.lambda -= n.length_squared() / n.dot(r);
         cast.x = s + r * cast.lambda;
     }
     cast
@@ -179,7 +179,7 @@ pub fn gjk_ray_cast<V: Vector>(
                 cast.hit = Some(false);
                 break;
             }
-            cast.lambda = cast.lambda - v.dot(w) / v.dot(r);
+            cast.lambda -= v.dot(w) / v.dot(r);
             cast.x = s + r * cast.lambda;
             cast.n = v;
         }

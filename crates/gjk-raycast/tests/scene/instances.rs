@@ -333,24 +333,35 @@ impl<V: Space> World<V> {
         let [a, b] = [ours.least_pair(options), apart.least_pair(options)];
         let named =
             |p: gjk_raycast::PairDistance<V>| (self.flat(p.a, p.member_a), self.flat(p.b, p.member_b), p.distance);
-        assert_eq!(a.nearest.map(named), b.nearest.map(|p| (p.a, p.b, p.distance)));
-        assert!(a.lower >= b.lower && a.nearest.is_none_or(|pair| a.lower <= pair.distance.distance));
-        assert_eq!(a.work.tested + a.work.culled, b.work.tested + b.work.culled - self.pairs_of_one());
+        assert_eq!(a.nearest.map(named), b.nearest.map(|p| (p.a, p.b, p.distance)), "as in the flat scene");
+        assert!(
+            a.lower >= b.lower && a.nearest.is_none_or(|pair| a.lower <= pair.distance.distance),
+            "as in the flat scene"
+        );
+        assert_eq!(
+            a.work.tested + a.work.culled,
+            b.work.tested + b.work.culled - self.pairs_of_one(),
+            "as in the flat scene"
+        );
         let within = V::Scalar::from_f64(size * numbers.unit());
         let [a, b] = [ours, apart].map(|all| all.any_pair_within(within, DistanceOptions::default()));
-        assert_eq!((a.any, a.is_certain()), (b.any, b.is_certain()));
+        assert_eq!((a.any, a.is_certain()), (b.any, b.is_certain()), "as in the flat scene");
         let (shape, all) = (self.shape(numbers, 0).2, DistanceOptions::default());
-        assert_eq!(ours.any_within(&shape, within, all).any, flat.any_within(&shape, within, all).any);
+        assert_eq!(
+            ours.any_within(&shape, within, all).any,
+            flat.any_within(&shape, within, all).any,
+            "as in the flat scene"
+        );
         // Some bodies of one scene, and all of the other.
         let even = |body: usize| body.is_multiple_of(2);
         let even_path = |body: usize| even(self.paths[body][0]);
         let a = self.scene.among(&even).nearest_between(&self.flat, options);
         let b = self.flat.among(&even_path).nearest_between(&self.flat, options);
         let named = |p: gjk_raycast::PairDistance<V>| (self.flat(p.a, p.member_a), p.b, p.distance);
-        assert_eq!(a.nearest.map(named), b.nearest.map(|p| (p.a, p.b, p.distance)));
+        assert_eq!(a.nearest.map(named), b.nearest.map(|p| (p.a, p.b, p.distance)), "as in the flat scene");
         let a = self.flat.among(&even_path).nearest_between(&self.scene, options);
         let named = |p: gjk_raycast::PairDistance<V>| (p.a, self.flat(p.b, p.member_b), p.distance);
-        assert_eq!(a.nearest.map(named), b.nearest.map(|p| (p.a, p.b, p.distance)));
+        assert_eq!(a.nearest.map(named), b.nearest.map(|p| (p.a, p.b, p.distance)), "as in the flat scene");
     }
 
     /// The number of pairs of members of one body.
@@ -382,15 +393,19 @@ impl<V: Space> World<V> {
             (self.flat(p.a, p.member_a), self.flat(p.b, p.member_b), p.impact, p.lower, p.upper)
         };
         let own = |p: &gjk_raycast::PairImpact<V>| (p.a, p.b, p.impact, p.lower, p.upper);
-        assert_eq!(found.iter().map(named).collect::<Vec<_>>(), due.iter().map(own).collect::<Vec<_>>());
-        assert_eq!(a.first.as_ref().map(named), b.first.as_ref().map(own));
+        assert_eq!(
+            found.iter().map(named).collect::<Vec<_>>(),
+            due.iter().map(own).collect::<Vec<_>>(),
+            "as in the flat scene"
+        );
+        assert_eq!(a.first.as_ref().map(named), b.first.as_ref().map(own), "as in the flat scene");
         let a = ours.first_contact(&of_body, step).expect("good motions");
-        assert_eq!(a.first.as_ref().map(named), b.first.as_ref().map(own));
+        assert_eq!(a.first.as_ref().map(named), b.first.as_ref().map(own), "as in the flat scene");
         let motions = [&of_member as _, &of_body as _];
         let _ = self.flat.all().first_contacts_between(&self.scene, motions, step, &mut found).expect("good motions");
         let named = |p: &gjk_raycast::PairImpact<V>| (p.a, self.flat(p.b, p.member_b), p.impact, p.lower, p.upper);
         let kept = found.iter().map(named).filter(|&(a, b, ..)| a < b && !of_one(a, b));
-        assert_eq!(kept.collect::<Vec<_>>(), due.iter().map(own).collect::<Vec<_>>());
+        assert_eq!(kept.collect::<Vec<_>>(), due.iter().map(own).collect::<Vec<_>>(), "as in the flat scene");
     }
 
     fn pairs(&self, numbers: &mut Numbers, size: f64) {
