@@ -203,7 +203,7 @@ pub use intersects::{IntersectOptions, Intersection, intersects, intersects_with
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{LinearCast, LinearCastOptions, Motion, linear_cast, linear_cast_with};
 pub use linkage::{
-    ConfigurationWorkspace, FreeBox, FreeInterval, Joint, JointBounds, JointBox, JointBoxOutcome, JointKind,
+    BodyPair, ConfigurationWorkspace, FreeBox, FreeInterval, Joint, JointBounds, JointBox, JointBoxOutcome, JointKind,
     JointState, JointTrajectory, Link, LinkClearance, LinkFrame, Linkage, LinkageError, Met, NearestOnPath, Path,
     PathClearance, PathContact, PathWorkspace,
 };

@@ -8,9 +8,9 @@ use convex_support::{
     Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap, Vector, support_value,
 };
 use gjk_raycast::{
-    Body, Group, HalfSpace, Joint, JointBounds, JointBoxOutcome, JointKind, JointState, JointTrajectory, Link, Linkage,
-    LinkageError, Met, MotionCastOptions, Path, PathContact, PathWorkspace, Pose, RayCastError, Scene,
-    SignedDistanceOptions, Status, signed_distance,
+    Body, BodyPair, FreeBox, Group, HalfSpace, Joint, JointBounds, JointBoxOutcome, JointKind, JointState,
+    JointTrajectory, Link, Linkage, LinkageError, Met, MotionCastOptions, Path, PathContact, PathWorkspace, Pose,
+    RayCastError, Scene, SignedDistanceOptions, Status, signed_distance,
 };
 
 type Bar = Rounded<Segment<DVec2>>;
@@ -513,6 +513,138 @@ fn where_links_almost_meet_does_not_hide_where_they_do() -> Result<(), Box<dyn s
     let touching = Linkage::new([turning(None, DVec2::ZERO)], [post, hand])?;
     let answer = touching.joint_box([1, 0], &[[0.25; 2]], 0.0, 100_000)?;
     assert_eq!((answer.outcome, answer.boxes), (JointBoxOutcome::Undecided { share: 1.0 }, 1), "nothing can be halved");
+    Ok(())
+}
+
+/// In a part of the box that is proved free for two bodies they are farther apart than the target at any joint values,
+/// and such parts cover a box in which nothing ever meets. Values at which something is said to meet are such by its
+/// distance. Bodies at rest are a ball, a box, a member of a group and a half-space.
+#[test]
+fn a_box_among_bodies_at_rest_agrees_with_the_distances_in_it() -> Result<(), Box<dyn std::error::Error>> {
+    let at = |x: f64, y: f64, z: f64| Pose { translation: DVec3::new(x, y, z), ..Pose::default() };
+    let bar = |half: f64| -> Result<Shape, InvalidShape> {
+        let ends = [DVec3::ZERO, DVec3::X * 2.0 * half];
+        Ok(Box::new(Rounded::new(Segment::new(ends)?, 0.05)?))
+    };
+    let joint = |parent, pose, kind| Joint { parent, pose, kind };
+    let robot = Linkage::new(
+        [
+            joint(None, at(0.0, 0.0, 0.2), JointKind::Revolute(DVec3::Z)),
+            joint(Some(0), at(0.6, 0.0, 0.0), JointKind::Revolute(DVec3::new(0.2, 1.0, 0.0))),
+            joint(Some(1), at(0.6, 0.0, 0.0), JointKind::Prismatic(DVec3::new(0.3, 0.0, 1.0))),
+        ],
+        [
+            Link { joint: None, bodies: vec![bar(0.05)?] },
+            Link { joint: Some(0), bodies: vec![bar(0.3)?] },
+            Link { joint: Some(2), bodies: vec![bar(0.1)?, Box::new(Cuboid::new(DVec3::splat(0.04))?)] },
+        ],
+    )?;
+    let (robot, own) = (robot.with_pairs([[2, 0], [2, 1]])?, [[2, 0], [2, 1]]);
+    let mut seed = 5;
+    let [mut met, mut never] = [0; 2];
+    for _ in 0..60 {
+        let mut place = || {
+            let [x, y, z] = [0; 3].map(|_| 2.4 * random(&mut seed) - 1.2);
+            at(x, y, z)
+        };
+        let mut scene = Scene::<Shape>::default();
+        scene.insert(Box::new(Posed::translated(Ball::new(0.1)?, place().translation)?))?;
+        scene.insert(Box::new(Posed::translated(Cuboid::new(DVec3::new(0.1, 0.05, 0.2))?, place().translation)?))?;
+        let two = [-0.1, 0.1].map(|x| Posed::translated(Ball::new(0.07).expect("a radius"), DVec3::X * x));
+        scene.insert_group(&Group::new(Scene::new(two.into_iter().collect::<Result<Vec<_>, _>>()?)?)?, place())?;
+        scene.insert_half_space(HalfSpace::new(DVec3::new(0.1, 0.2, 2.0), -2.0 * random(&mut seed))?);
+        let target = 0.05 * random(&mut seed);
+        let mut interval = |most: f64| {
+            let [middle, half] = [most * (2.0 * random(&mut seed) - 1.0), 0.4 * most * random(&mut seed)];
+            [middle - half, middle + half]
+        };
+        let whole = [interval(3.0), interval(1.2), interval(0.4)];
+        let mut free: Vec<(BodyPair, Vec<[f64; 2]>)> = Vec::new();
+        let show = |FreeBox { bodies, joint_box, .. }: FreeBox<'_, DVec3, BodyPair>| {
+            free.push((bodies, joint_box.to_vec()));
+        };
+        let answer = robot.joint_box_among_with(&scene, &whole, target, 100_000, show)?;
+        let distance = |BodyPair { link, body, met }: BodyPair, values: &[f64]| {
+            let placed = |link, body| robot.placed(link, body, values).expect("a body");
+            let (shape, options) = (placed(link, body), SignedDistanceOptions::new());
+            match met {
+                Met::Obstacle(obstacle) => scene.get(obstacle).expect("a body").signed_distance(&shape, options),
+                Met::Member { obstacle, member } => {
+                    signed_distance(&shape, &scene.member(obstacle, member).expect("a member"), options)
+                }
+                Met::Link { link, body } => signed_distance(&shape, &placed(link, body), options),
+            }
+            .signed_distance
+        };
+        for (bodies, part) in &free {
+            for _ in 0..5 {
+                let values: Vec<_> =
+                    part.iter().map(|[low, high]| low + (high - low) * random(&mut seed).round()).collect();
+                assert!(distance(*bodies, &values) > target, "{bodies:?} at {values:?} in {part:?}");
+                let values: Vec<_> = part.iter().map(|[low, high]| low + (high - low) * random(&mut seed)).collect();
+                assert!(distance(*bodies, &values) > target, "{bodies:?} at {values:?} in {part:?}");
+            }
+        }
+        match answer.outcome {
+            JointBoxOutcome::Never => {
+                never += 1;
+                let at_rest = [0, 1, 3].map(Met::Obstacle).into_iter();
+                let members = [0, 1].map(|member| Met::Member { obstacle: 2, member });
+                let at_rest: Vec<_> = at_rest.chain(members).collect();
+                let bodies = (0..3).flat_map(|link| (0..robot.bodies(link).len()).map(move |body| (link, body)));
+                let among =
+                    bodies.flat_map(|(link, body)| at_rest.iter().map(move |&met| BodyPair { link, body, met }));
+                let met = |[link, other]: [usize; 2]| {
+                    [0, 1].map(|body| BodyPair { link, body, met: Met::Link { link: other, body: 0 } })
+                };
+                let volume = |part: &[[f64; 2]]| part.iter().map(|[low, high]| high - low).product::<f64>();
+                for pair in among.chain(own.into_iter().flat_map(met)) {
+                    let covered: f64 = free.iter().filter(|part| part.0 == pair).map(|part| volume(&part.1)).sum();
+                    assert!((covered / volume(&whole) - 1.0).abs() < 1e-9, "{pair:?}: {covered}");
+                }
+            }
+            JointBoxOutcome::Meets { values, bodies } => {
+                met += 1;
+                assert!(values.iter().zip(&whole).all(|(value, [low, high])| low <= value && value <= high));
+                let there = distance(bodies, &values);
+                assert!(there <= target, "{bodies:?} at {values:?}: {there}");
+            }
+            JointBoxOutcome::Undecided { share } => return Err(format!("{share} of {whole:?} is open").into()),
+        }
+    }
+    assert!(met > 10 && never > 10, "{met} met, {never} never");
+    Ok(())
+}
+
+/// Without bodies at rest the answer is that of the pair, and without a pair nothing meets.
+#[test]
+fn a_box_among_nothing_is_that_of_its_pairs() -> Result<(), Box<dyn std::error::Error>> {
+    let joints = [turning(None, DVec2::X), turning(Some(0), DVec2::X)];
+    let chain = Linkage::new(joints, [None, Some(0), Some(1)].map(|joint| Link { joint, bodies: vec![bar()] }))?;
+    let own = chain.clone().with_pairs([[2, 0]])?;
+    let nothing = Scene::<Bar>::default();
+    for half in [1.5, 2.05, 2.1] {
+        for most in [0, 9, 100_000] {
+            let limits = [[-half, half]; 2];
+            let (one, all) =
+                (chain.joint_box([2, 0], &limits, 0.0, most)?, own.joint_box_among(&nothing, &limits, 0.0, most)?);
+            assert_eq!(one.boxes, all.boxes);
+            let met = |[body, other]: [usize; 2]| BodyPair { link: 2, body, met: Met::Link { link: 0, body: other } };
+            let expected = match one.outcome {
+                JointBoxOutcome::Never => JointBoxOutcome::Never,
+                JointBoxOutcome::Meets { values, bodies } => JointBoxOutcome::Meets { values, bodies: met(bodies) },
+                JointBoxOutcome::Undecided { share } => JointBoxOutcome::Undecided { share },
+            };
+            assert_eq!(all.outcome, expected);
+            let without = chain.joint_box_among(&nothing, &limits, 0.0, most)?;
+            assert_eq!((without.outcome, without.boxes), (JointBoxOutcome::Never, 0));
+        }
+    }
+    let boxes = |limits: &[[f64; 2]], target| own.joint_box_among(&nothing, limits, target, 100).err();
+    assert_eq!(boxes(&[[0.0, 1.0], [1.0, 0.5]], 0.0), Some(LinkageError::Interval { value: 1 }));
+    assert_eq!(boxes(&[[0.0, 1.0]], 0.0), Some(LinkageError::Count { waypoint: 0, joints: 2, values: 1 }));
+    assert_eq!(boxes(&[[f64::NAN, 1.0], [0.0, 1.0]], 0.0), Some(LinkageError::Value { waypoint: 0, value: 0 }));
+    assert!(matches!(boxes(&[[0.0, 1.0]; 2], f64::NAN), Some(LinkageError::Option(_))));
     Ok(())
 }
 

@@ -1,8 +1,9 @@
 //! `joint_box`.
 
-use convex_support::Vector;
-use gjk_raycast::{FreeBox, JointBoxOutcome, Linkage};
+use convex_support::{Scalar, Vector};
+use gjk_raycast::{BodyPair, FreeBox, JointBoxOutcome, Linkage, Scene};
 
+use super::path::{Surrounded, of_what};
 use super::{Ask, How, Query, Question, meeting, scalar};
 use crate::wire::answer::{Answer, Field, Number};
 use crate::wire::error::{Kind, Problem};
@@ -16,19 +17,31 @@ const MAX_BOXES: usize = 100_000;
 
 /// The query as written.
 pub(super) struct JointBox {
-    robot: linkage::Linkage,
-    pair: [usize; 2],
+    about: About,
     intervals: Vec<[f64; 2]>,
     target_distance: f64,
 }
 
+/// Which links, and what they may meet.
+enum About {
+    Pair(linkage::Linkage, [usize; 2]),
+    Scene(Surrounded),
+}
+
 impl Query for JointBox {
-    const FIELDS: Names = &["joints", "links", "pair", "box", "target_distance"];
+    const FIELDS: Names = &["joints", "links", "pair", "obstacles", "self", "box", "target_distance"];
 
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        let about = match fields.only_one_of(&["pair", "obstacles"])? {
+            "obstacles" => About::Scene(Surrounded::read(fields)?),
+            _ if fields.has("self") => {
+                let message = "self stands beside obstacles, which may be empty, and not beside pair";
+                return Err(Problem::new(Kind::UnknownField, message.to_owned()));
+            }
+            _ => About::Pair(linkage::Linkage::read(fields)?, fields.get("pair")?),
+        };
         Ok(Self {
-            robot: linkage::Linkage::read(fields)?,
-            pair: fields.get("pair")?,
+            about,
             intervals: fields.get("box")?,
             target_distance: fields.not_negative("target_distance")?.unwrap_or(0.0),
         })
@@ -36,12 +49,17 @@ impl Query for JointBox {
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
         how.method(&[("gjk", ())])?;
-        Ok(Box::new(Ever::<V> {
-            robot: self.robot.build(how.meshes)?,
-            pair: self.pair,
-            intervals: self.intervals.iter().map(|ends| ends.map(scalar::<V>)).collect(),
-            target_distance: scalar::<V>(self.target_distance),
-        }))
+        let intervals = self.intervals.iter().map(|ends| ends.map(scalar::<V>)).collect();
+        let target_distance = scalar::<V>(self.target_distance);
+        Ok(match &self.about {
+            About::Pair(robot, pair) => {
+                Box::new(Ever::<V> { robot: robot.build(how.meshes)?, pair: *pair, intervals, target_distance })
+            }
+            About::Scene(robot) => {
+                let (robot, scene) = robot.build(how.meshes)?;
+                Box::new(EverAmong::<V> { robot, scene, intervals, target_distance })
+            }
+        })
     }
 }
 
@@ -84,21 +102,52 @@ impl<V: Space> Question for Ever<V> {
     }
 
     fn answer(&self, answer: Self::Solution) -> Result<Answer, Problem> {
-        let meets = |meets| Answer::default().with("meets", Field::Flag(meets));
-        let found = match answer.outcome {
-            JointBoxOutcome::Never => meets(false),
-            JointBoxOutcome::Meets { values, bodies } => meets(true)
-                .with("values", Field::Numbers(values.into_iter().map(Number::of).collect()))
-                .with("body", Field::Count(bodies[0]))
-                .with("other_body", Field::Count(bodies[1])),
-            JointBoxOutcome::Undecided { share } => {
-                let boxes = answer.boxes;
-                let message = format!(
-                    "undecided_share {share}: so much of the box is not known to be free after a look at {boxes} parts of it"
-                );
-                return Err(Problem::new(Kind::NotConverged, message));
-            }
-        };
-        Ok(found.with("boxes", Field::Count(answer.boxes)))
+        of_search(answer, |answer, [body, other]| {
+            answer.with("body", Field::Count(body)).with("other_body", Field::Count(other))
+        })
     }
+}
+
+struct EverAmong<V: Vector> {
+    robot: Linkage<Solid<V>>,
+    scene: Scene<Solid<V>>,
+    intervals: Vec<[V::Scalar; 2]>,
+    target_distance: V::Scalar,
+}
+
+impl<V: Space> Question for EverAmong<V> {
+    type Solution = gjk_raycast::JointBox<V::Scalar, BodyPair>;
+
+    fn solve(&self) -> Result<Self::Solution, Problem> {
+        let Self { robot, scene, intervals, target_distance } = self;
+        robot.joint_box_among(scene, intervals, *target_distance, MAX_BOXES).map_err(problem)
+    }
+
+    fn answer(&self, answer: Self::Solution) -> Result<Answer, Problem> {
+        of_search(answer, |answer, BodyPair { link, body, met }| {
+            of_what(answer.with("link", Field::Count(link)).with("body", Field::Count(body)), met)
+        })
+    }
+}
+
+/// What became of a search, with the names of the bodies that meet.
+fn of_search<S: Scalar, P>(
+    found: gjk_raycast::JointBox<S, P>,
+    name: impl Fn(Answer, P) -> Answer,
+) -> Result<Answer, Problem> {
+    let (boxes, meets) = (found.boxes, |meets| Answer::default().with("meets", Field::Flag(meets)));
+    let answer = match found.outcome {
+        JointBoxOutcome::Never => meets(false),
+        JointBoxOutcome::Meets { values, bodies } => {
+            let values = values.into_iter().map(Number::of).collect();
+            name(meets(true).with("values", Field::Numbers(values)), bodies)
+        }
+        JointBoxOutcome::Undecided { share } => {
+            let message = format!(
+                "undecided_share {share}: so much of the box is not known to be free after a look at {boxes} parts of it"
+            );
+            return Err(Problem::new(Kind::NotConverged, message));
+        }
+    };
+    Ok(answer.with("boxes", Field::Count(boxes)))
 }

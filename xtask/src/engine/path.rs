@@ -24,12 +24,37 @@ use crate::wire::shape::{Solid, Space};
 /// How often an edge is timed.
 const RUNS: usize = 5;
 
-/// The query as written.
-pub(super) struct Path {
+/// A robot among bodies at rest, as written, with the pairs of its own links that are tested.
+pub(super) struct Surrounded {
     robot: linkage::Linkage,
-    waypoints: Vec<Vec<f64>>,
     obstacles: Vec<Body>,
     pairs: Vec<[usize; 2]>,
+}
+
+/// A robot, and the bodies at rest around it.
+type InScene<V> = (Linkage<Solid<V>>, Scene<Solid<V>>);
+
+impl Surrounded {
+    pub(super) fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        Ok(Self {
+            robot: linkage::Linkage::read(fields)?,
+            obstacles: fields.each("obstacles")?.into_iter().map(Body::read).collect::<Result<_, _>>()?,
+            pairs: fields.maybe("self")?.unwrap_or_default(),
+        })
+    }
+
+    pub(super) fn build<V: Space>(&self, meshes: &Meshes) -> Result<InScene<V>, Problem> {
+        let build = |(i, body): (usize, &Body)| body.build(&format!("obstacles[{i}]"), meshes).map(Built::Body);
+        let obstacles = self.obstacles.iter().enumerate().map(build).collect::<Result<Vec<_>, _>>()?;
+        let robot = self.robot.build(meshes)?.with_pairs(self.pairs.iter().copied()).map_err(problem)?;
+        Ok((robot, scene_of(obstacles).map_err(|why| refused(why, "obstacles"))?))
+    }
+}
+
+/// The query as written.
+pub(super) struct Path {
+    robot: Surrounded,
+    waypoints: Vec<Vec<f64>>,
     target_distance: f64,
     clearance: bool,
 }
@@ -39,10 +64,8 @@ impl Query for Path {
 
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
         Ok(Self {
-            robot: linkage::Linkage::read(fields)?,
+            robot: Surrounded::read(fields)?,
             waypoints: fields.get("waypoints")?,
-            obstacles: fields.each("obstacles")?.into_iter().map(Body::read).collect::<Result<_, _>>()?,
-            pairs: fields.maybe("self")?.unwrap_or_default(),
             target_distance: fields.not_negative("target_distance")?.unwrap_or(0.0),
             clearance: fields.flag("clearance")?,
         })
@@ -57,16 +80,14 @@ impl Path {
     /// The way of the robot in a space.
     fn way<V: Space>(&self, how: &How<'_>) -> Result<Way<V>, Problem> {
         how.method(&[("gjk", ())])?;
-        let build = |(i, body): (usize, &Body)| body.build(&format!("obstacles[{i}]"), how.meshes).map(Built::Body);
-        let obstacles = self.obstacles.iter().enumerate().map(build).collect::<Result<Vec<_>, _>>()?;
+        let (robot, scene) = self.robot.build(how.meshes)?;
         let mut options = MotionCastOptions::new().with_target_distance(scalar::<V>(self.target_distance));
         options.tolerance = how.tolerance::<V>()?.unwrap_or(options.tolerance);
         let mut of_clearance = MotionClearanceOptions::new();
         of_clearance.tolerance = how.tolerance::<V>()?.unwrap_or(of_clearance.tolerance);
-        let pairs = self.pairs.iter().copied();
         Ok(Way {
-            robot: self.robot.build(how.meshes)?.with_pairs(pairs).map_err(problem)?,
-            scene: scene_of(obstacles).map_err(|why| refused(why, "obstacles"))?,
+            robot,
+            scene,
             waypoints: self.waypoints.iter().map(|row| row.iter().map(|&value| scalar::<V>(value)).collect()).collect(),
             options,
             clearance: self.clearance.then_some(of_clearance),
@@ -190,7 +211,7 @@ impl<V: Space> Way<V> {
 }
 
 /// With what is met, or not.
-fn of_what(answer: Answer, met: Met) -> Answer {
+pub(super) fn of_what(answer: Answer, met: Met) -> Answer {
     match met {
         Met::Obstacle(obstacle) | Met::Member { obstacle, .. } => answer.with("obstacle", Field::Count(obstacle)),
         Met::Link { link, body } => {

@@ -1,8 +1,9 @@
-//! Whether two links ever meet, at any positions of their joints.
+//! Whether links ever meet one another, or bodies at rest, at any positions of their joints.
 //!
-//! A box of joint values is proved to be free by one plane. All is seen in the frame of the second link. In the middle
-//! of the box the plane across the unit vector `n` separates the two links. If each joint `j` changes by up to `δⱼ`, at
-//! a constant rate within a unit of time, a point `x` of the first link comes nearer to the plane by no more than
+//! A box of joint values is proved to be free by one plane. All is seen in the frame of the second body: that of its
+//! link, or the world for a body at rest. In the middle of the box the plane across the unit vector `n` separates the
+//! two bodies. If each joint `j` changes by up to `δⱼ`, at a constant rate within a unit of time, a point `x` of the
+//! first body comes nearer to the plane by no more than
 //!
 //! > Σ δⱼ·|mⱼ·(x − cⱼ)| + a/2,   mⱼ = n × axisⱼ,
 //!
@@ -10,6 +11,9 @@
 //! joint values. So the box is free if `n·x` less this amount stays above the plane for all points of the body. For
 //! each choice of the signs of the products this least height is a support value. Each point counts with its own path:
 //! one that is far from the plane may come much nearer.
+//!
+//! Each two bodies have their own parts of the box: what is proved for them needs no proof again where others are open,
+//! and a joint that does not move them against one another is never halved for them.
 //!
 //! A box that is not proved to be free is halved along the joint for which halving improves the bound most. The order
 //! of the boxes decides how soon a pose is found in which the links meet. Three times out of four the next box is the
@@ -32,11 +36,11 @@ use super::frame::epsilons;
 use super::joint::{JointStage, Moving};
 use super::joint_trajectory::{JointBounds, JointState};
 use super::link_motion::Route;
-use super::path_answer::FreeBox;
+use super::path_answer::{BodyPair, FreeBox, Met};
 use super::robot::Linkage;
 use crate::axial;
 use crate::outcome::check_limits;
-use crate::{SignedDistanceOptions, signed_distance};
+use crate::{Body, Scene, SignedDistanceOptions};
 
 /// The number of joints whose signs are tried in all combinations. For each joint beyond these, the worst sign is taken
 /// by itself.
@@ -45,31 +49,31 @@ const MAX_SIGNS: usize = 5;
 /// One in this many parts that are halved is the largest part that is still undecided.
 const LARGEST_EVERY: usize = 4;
 
-/// The answer of [`Linkage::joint_box`].
+/// The answer of [`Linkage::joint_box`], or with `P` a [`BodyPair`] that of [`Linkage::joint_box_among`].
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
-pub struct JointBox<S> {
+pub struct JointBox<S, P = [usize; 2]> {
     /// Whether the links meet.
-    pub outcome: JointBoxOutcome<S>,
+    pub outcome: JointBoxOutcome<S, P>,
     /// The number of parts of the box that were tested.
     pub boxes: usize,
 }
 
-/// Whether two links meet anywhere in a box of joint values.
+/// Whether links meet anywhere in a box of joint values.
 #[derive(Clone, Debug, PartialEq)]
-pub enum JointBoxOutcome<S> {
+pub enum JointBoxOutcome<S, P = [usize; 2]> {
     /// They are farther apart than the target distance everywhere in the box. This is a proof.
     Never,
     /// They are certainly no farther apart than the target distance in a pose.
     Meets {
         /// The joint values of the pose.
         values: Vec<S>,
-        /// The bodies of both links that meet.
-        bodies: [usize; 2],
+        /// The bodies that meet: of both links, or a [`BodyPair`].
+        bodies: P,
     },
     /// Neither is proved.
     Undecided {
-        /// The share of the box that is not proved free.
+        /// No more than this share of the box is not proved free: the sum over all pairs of bodies, but at most 1.
         share: S,
     },
 }
@@ -130,60 +134,165 @@ impl<S: SupportMap> Linkage<S> {
         max_boxes: usize,
         mut observer: impl FnMut(FreeBox<'_, S::Vector>),
     ) -> Result<JointBox<ScalarOf<S>>, LinkageError> {
-        check_limits(Scalar::ZERO, target_distance)?;
-        let target = target_distance.max(Scalar::ZERO);
+        let target = self.check_box(joint_box, target_distance)?;
         let route = self.skeleton.between(pair).ok_or(LinkageError::Pair { pair: 0 })?;
+        let [a, b] = pair.map(|link| &self.bodies[link]);
+        let pairs = (0..a.len()).flat_map(|i| (0..b.len()).map(move |k| [i, k]));
+        let look = |[i, k]: [usize; 2], part: &_| look(&route, target, &a[i], &Body::Convex(&b[k]), part);
+        Ok(search(pairs, joint_box, max_boxes, look, &mut observer))
+    }
+
+    /// Whether any body of a link is ever as near as the target distance to a body of a scene at rest, or those of the
+    /// [pairs](Self::with_pairs) to one another, where each joint value may be anywhere in an interval. It is one search
+    /// for all of them, as that of [`joint_box`](Self::joint_box): it gives up after `max_boxes` parts of the box,
+    /// counted for each two bodies, but looks at least once at each two.
+    ///
+    /// ```
+    /// use convex_support::{Ball, Posed, Rounded, Segment, glam::DVec2};
+    /// use gjk_raycast::{HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, Met, Pose, Scene};
+    ///
+    /// // A bar of length 1 turns about the origin. There are a wall at x = −0.5 and a ball at 45°.
+    /// let bar = Rounded::new(Segment::new([DVec2::ZERO, DVec2::X])?, 0.05)?;
+    /// let joint = Joint { parent: None, pose: Pose::default(), kind: JointKind::Revolute(1.0) };
+    /// let arm = Linkage::new([joint], [Link { joint: Some(0), bodies: vec![bar] }])?;
+    /// let mut scene = Scene::new([Posed::translated(Ball::new(0.1)?, DVec2::splat(0.5))?])?;
+    /// scene.insert_half_space(HalfSpace::new(DVec2::X, -0.5)?);
+    /// let ask = |low: f64, high: f64| {
+    ///     arm.joint_box_among(&scene, &[[low.to_radians(), high.to_radians()]], 0.0, 1000)
+    /// };
+    ///
+    /// // The bar touches the ball at 45° − 12.2° = 32.8°, and the wall at −116.7°, where −cos is (0.5 − 0.05)/1.
+    /// assert_eq!(ask(-116.0, 32.0)?.outcome, JointBoxOutcome::Never);
+    /// let JointBoxOutcome::Meets { bodies, .. } = ask(-117.0, 32.0)?.outcome else { return Err("the wall".into()) };
+    /// assert_eq!(bodies.met, Met::Obstacle(1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`joint_box`](Self::joint_box).
+    pub fn joint_box_among<O: SupportMap<Vector = S::Vector>>(
+        &self,
+        scene: &Scene<O>,
+        joint_box: &[[ScalarOf<S>; 2]],
+        target_distance: ScalarOf<S>,
+        max_boxes: usize,
+    ) -> Result<JointBox<ScalarOf<S>, BodyPair>, LinkageError> {
+        self.joint_box_among_with(scene, joint_box, target_distance, max_boxes, |_| {})
+    }
+
+    /// [`joint_box_among`](Self::joint_box_among) with an observer, as that of
+    /// [`joint_box_with`](Self::joint_box_with).
+    ///
+    /// # Errors
+    /// Those of [`joint_box`](Self::joint_box).
+    pub fn joint_box_among_with<O: SupportMap<Vector = S::Vector>>(
+        &self,
+        scene: &Scene<O>,
+        joint_box: &[[ScalarOf<S>; 2]],
+        target_distance: ScalarOf<S>,
+        max_boxes: usize,
+        mut observer: impl FnMut(FreeBox<'_, S::Vector, BodyPair>),
+    ) -> Result<JointBox<ScalarOf<S>, BodyPair>, LinkageError> {
+        let target = self.check_box(joint_box, target_distance)?;
+        let views = &self.skeleton.views;
+        let members = scene.instances().flat_map(|(obstacle, instance)| {
+            (0..instance.group().len()).map(move |member| Met::Member { obstacle, member })
+        });
+        let at_rest: Vec<_> = scene.iter().map(|(obstacle, _)| Met::Obstacle(obstacle)).chain(members).collect();
+        let pairs = views.iter().flat_map(|view| {
+            let of_link =
+                |link: usize| (0..self.bodies[link].len()).map(move |body| Met::Link { link, body }).collect();
+            let others: Vec<_> = view.base.map_or_else(|| at_rest.clone(), of_link);
+            let each = move |body| others.clone().into_iter().map(move |met| BodyPair { link: view.link, body, met });
+            (0..self.bodies[view.link].len()).flat_map(each)
+        });
+        let look = |BodyPair { link, body, met }, part: &_| {
+            let shape = &self.bodies[link][body];
+            let base = if let Met::Link { link, .. } = met { Some(link) } else { None };
+            let view = views.iter().find(|view| view.link == link && view.base == base);
+            let known = view.and_then(|view| match met {
+                Met::Obstacle(obstacle) => Some(look(&view.route, target, shape, scene.get(obstacle)?, part)),
+                Met::Member { obstacle, member } => {
+                    let member = Body::Convex(scene.member(obstacle, member)?);
+                    Some(look(&view.route, target, shape, &member, part))
+                }
+                Met::Link { link, body } => {
+                    Some(look(&view.route, target, shape, &Body::Convex(&self.bodies[link][body]), part))
+                }
+            });
+            // All of these exist; nothing would be known of one that does not.
+            known.unwrap_or(BoxState::Open { after: Scalar::ZERO, column: None })
+        };
+        Ok(search(pairs, joint_box, max_boxes, look, &mut observer))
+    }
+
+    /// The target distance of the search, if it and the box are valid.
+    fn check_box(
+        &self,
+        joint_box: &[[ScalarOf<S>; 2]],
+        target_distance: ScalarOf<S>,
+    ) -> Result<ScalarOf<S>, LinkageError> {
+        check_limits(Scalar::ZERO, target_distance)?;
         for end in [0, 1] {
             self.check(0, &joint_box.iter().map(|interval| interval[end]).collect::<Vec<_>>())?;
         }
-        if let Some(value) = joint_box.iter().position(|[low, high]| low > high) {
-            return Err(LinkageError::Interval { value });
+        match joint_box.iter().position(|[low, high]| low > high) {
+            Some(value) => Err(LinkageError::Interval { value }),
+            None => Ok(target_distance.max(Scalar::ZERO)),
         }
-        let bodies = pair.map(|link| &self.bodies[link]);
-        let pairs = (0..bodies[0].len()).flat_map(|i| (0..bodies[1].len()).map(move |k| [i, k]));
-        let whole = |bodies| BoxPart { bodies, joint_box: joint_box.to_vec(), share: ScalarOf::<S>::ONE };
-        let mut next: Vec<_> = pairs.map(whole).collect();
-        // The parts that are undecided, and their indices in the two orders.
-        let (mut open, mut orders) = (Vec::new(), [const { BinaryHeap::new() }; 2]);
-        let (mut boxes, mut share) = (0, ScalarOf::<S>::ZERO);
-        for turn in 1_usize.. {
-            for part in next.drain(..) {
-                boxes += 1;
-                let BoxPart { bodies: [i, k], ref joint_box, .. } = part;
-                match look(&route, target, [&bodies[0][i], &bodies[1][k]], joint_box) {
-                    BoxState::Free { normal } => observer(FreeBox { bodies: part.bodies, joint_box, normal }),
-                    BoxState::Meets => {
-                        let values = joint_box.iter().map(|&interval| middle(interval)).collect();
-                        return Ok(JointBox { outcome: JointBoxOutcome::Meets { values, bodies: part.bodies }, boxes });
-                    }
-                    BoxState::Open { after, column: Some(column) } => {
-                        for (order, after) in orders.iter_mut().zip([after, -part.share]) {
-                            order.push(Reverse((in_order(after), open.len())));
-                        }
-                        open.push(Some((part, column)));
-                    }
-                    // If no joint moves the bodies against one another, there is nothing to halve.
-                    BoxState::Open { column: None, .. } => share += part.share,
-                }
-            }
-            if boxes >= max_boxes {
-                break;
-            }
-            let order = &mut orders[usize::from(turn % LARGEST_EVERY == 0)];
-            let first = core::iter::from_fn(|| order.pop()).find_map(|Reverse((_, index))| open[index].take());
-            let Some((part, column)) = first else { break };
-            next.extend(part.halves(column));
-        }
-        let share = open.iter().flatten().fold(share, |sum, (part, _)| sum + part.share).min(Scalar::ONE);
-        let is_never = share == Scalar::ZERO;
-        let outcome = if is_never { JointBoxOutcome::Never } else { JointBoxOutcome::Undecided { share } };
-        Ok(JointBox { outcome, boxes })
     }
 }
 
+/// The search for all of these pairs of bodies, by what is known of one of them in a part of the box.
+fn search<V: Vector, P: Copy>(
+    pairs: impl Iterator<Item = P>,
+    joint_box: &[[V::Scalar; 2]],
+    max_boxes: usize,
+    look: impl Fn(P, &[[V::Scalar; 2]]) -> BoxState<V>,
+    observer: &mut impl FnMut(FreeBox<'_, V, P>),
+) -> JointBox<V::Scalar, P> {
+    let whole = |bodies| BoxPart { bodies, joint_box: joint_box.to_vec(), share: V::Scalar::ONE };
+    let mut next: Vec<_> = pairs.map(whole).collect();
+    // The parts that are undecided, and their indices in the two orders.
+    let (mut open, mut orders) = (Vec::new(), [const { BinaryHeap::new() }; 2]);
+    let (mut boxes, mut share) = (0, V::Scalar::ZERO);
+    for turn in 1_usize.. {
+        for part in next.drain(..) {
+            boxes += 1;
+            let BoxPart { bodies, ref joint_box, .. } = part;
+            match look(bodies, joint_box) {
+                BoxState::Free { normal } => observer(FreeBox { bodies, joint_box, normal }),
+                BoxState::Meets => {
+                    let values = joint_box.iter().map(|&interval| middle(interval)).collect();
+                    return JointBox { outcome: JointBoxOutcome::Meets { values, bodies }, boxes };
+                }
+                BoxState::Open { after, column: Some(column) } => {
+                    for (order, after) in orders.iter_mut().zip([after, -part.share]) {
+                        order.push(Reverse((in_order(after), open.len())));
+                    }
+                    open.push(Some((part, column)));
+                }
+                // If no joint moves the bodies against one another, there is nothing to halve.
+                BoxState::Open { column: None, .. } => share += part.share,
+            }
+        }
+        if boxes >= max_boxes {
+            break;
+        }
+        let order = &mut orders[usize::from(turn % LARGEST_EVERY == 0)];
+        let first = core::iter::from_fn(|| order.pop()).find_map(|Reverse((_, index))| open[index].take());
+        let Some((part, column)) = first else { break };
+        next.extend(part.halves(column));
+    }
+    let share = open.iter().flatten().fold(share, |sum, (part, _)| sum + part.share).min(Scalar::ONE);
+    let is_never = share == Scalar::ZERO;
+    let outcome = if is_never { JointBoxOutcome::Never } else { JointBoxOutcome::Undecided { share } };
+    JointBox { outcome, boxes }
+}
+
 /// A part of the box for two bodies.
-struct BoxPart<S> {
-    bodies: [usize; 2],
+struct BoxPart<S, P> {
+    bodies: P,
     joint_box: Vec<[S; 2]>,
     share: S,
 }
@@ -203,11 +312,12 @@ enum BoxState<V: Vector> {
     },
 }
 
-/// Tests two bodies in a part of the box, given the route from the link of the second to that of the first.
-fn look<V: Vector, S: SupportMap<Vector = V>>(
+/// Tests two bodies in a part of the box, given the route from the frame of the second to the link of the first.
+fn look<V: Vector, S: SupportMap<Vector = V>, O: SupportMap<Vector = V>>(
     route: &Route<V>,
     target: V::Scalar,
-    [a, b]: [&S; 2],
+    a: &S,
+    b: &Body<O>,
     joint_box: &[[V::Scalar; 2]],
 ) -> BoxState<V> {
     let Route { stages, tail } = route;
@@ -219,7 +329,13 @@ fn look<V: Vector, S: SupportMap<Vector = V>>(
     };
     let Core { origin, extent, radius, .. } = a.core();
     let reach = raised(tail.of(origin).norm() + extent + radius + tail.error_of(origin.norm() + extent));
-    let sizes = [a.core(), b.core()].map(|core| core.origin.norm() + core.extent + core.radius);
+    let size_of = |core: Core<V>| core.origin.norm() + core.extent + core.radius;
+    let size_a = size_of(a.core());
+    // The farthest point of a half-space along its normal is any of its plane.
+    let (size_b, error_b) = match b {
+        Body::Convex(b) => (size_of(b.core()), b.core().error),
+        Body::HalfSpace(b) => (b.offset().abs() / b.length, zero),
+    };
     // The axis of each joint, and its origin.
     let (mut moving, mut axes) = (Moving::WORLD, SmallVec::<[[V; 2]; 8]>::new());
     for stage in stages {
@@ -232,15 +348,19 @@ fn look<V: Vector, S: SupportMap<Vector = V>>(
         // The place is not finite, and no more will be known after halving.
         return BoxState::Open { after: zero, column: stages.first().map(|stage| stage.column) };
     };
-    let answer = signed_distance(&a, b, SignedDistanceOptions::new());
+    let answer = b.signed_distance(&a, SignedDistanceOptions::new());
     // `Posed` makes the matrix orthonormal, which changes it by no more than its error. So the error counts twice.
     let error = raised(frame.error_of(reach) * two);
     if answer.upper + error <= target {
         return BoxState::Meets;
     }
     let n = answer.normal;
-    let (mut changes, mut level) = (SmallVec::<[(V, V::Scalar); 8]>::new(), -support_value(b, n));
-    let (mut turned, mut size) = (one, reach + sizes[0] + sizes[1] + frame.translation.norm());
+    let highest = match b {
+        Body::Convex(b) => support_value(b, n),
+        Body::HalfSpace(b) => b.offset() / b.length,
+    };
+    let (mut changes, mut level) = (SmallVec::<[(V, V::Scalar); 8]>::new(), -highest);
+    let (mut turned, mut size) = (one, reach + size_a + size_b + frame.translation.norm());
     for (stage, &[axis, origin]) in stages.iter().zip(&axes) {
         let half = half(stage.column);
         if stage.turns() {
@@ -261,7 +381,7 @@ fn look<V: Vector, S: SupportMap<Vector = V>>(
         bounds.acceleration.of(reach) / two
     };
     let bent = bent_by(&half);
-    let shapes = a.core().error + b.core().error;
+    let shapes = a.core().error + error_b;
     // The directions of the support values are as long as 1 plus the angles by which the joints turn.
     let lost = (error + shapes + epsilons::<V::Scalar>(64.0) * size) * turned + bent * epsilons(64.0);
     if level - bent - raised(lost) > target {
@@ -295,7 +415,7 @@ fn least_height<V: Vector>(height: &impl Fn(V) -> V::Scalar, n: V, changes: &[(V
     Float::min(up, down)
 }
 
-impl<S: Scalar> BoxPart<S> {
+impl<S: Scalar, P: Copy> BoxPart<S, P> {
     /// Both halves of the part along one joint value.
     fn halves(mut self, column: usize) -> [Self; 2] {
         let [low, high] = self.joint_box[column];

@@ -92,6 +92,18 @@ pub enum Met {
     },
 }
 
+/// A body of a link and another body, of which [`Linkage::joint_box_among`](crate::Linkage::joint_box_among) tells
+/// whether they meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodyPair {
+    /// The link.
+    pub link: usize,
+    /// The body of the link.
+    pub body: usize,
+    /// The other body.
+    pub met: Met,
+}
+
 impl<V: Vector> Path<V> {
     /// Whether the whole path is proved to be free.
     #[must_use]
@@ -135,12 +147,13 @@ pub struct FreeInterval<V: Vector> {
 /// A part of a box of joint values in which two bodies are proved to be apart: one plane separates them, by more than
 /// the target distance, at all values.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FreeBox<'b, V: Vector> {
-    /// The body of the first link and that of the second.
-    pub bodies: [usize; 2],
+pub struct FreeBox<'b, V: Vector, P = [usize; 2]> {
+    /// The body of the first link and that of the second, or a [`BodyPair`].
+    pub bodies: P,
     /// The interval of each joint value.
     pub joint_box: &'b [[V::Scalar; 2]],
-    /// The normal of the plane, in the frame of the second link's joint, towards the first.
+    /// The normal of the plane, in the frame of the second link's joint or, where that body is at rest, in the world,
+    /// towards the first.
     pub normal: V,
 }
 
