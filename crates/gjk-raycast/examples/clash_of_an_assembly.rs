@@ -61,7 +61,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             ("shaft", "key", "clash", -0.2),
             ("shaft", "left cheek", "too near", 0.25),
             ("shaft", "washer", "too near", 0.3)
-        ]
+        ],
+        "one pair overlaps, and one is too near"
     );
     Ok(())
 }
