@@ -751,8 +751,8 @@ mod tests {
     fn a_question_to_a_scene_is_of_one_kind() {
         let problem =
             refused(r#"{"query":"scene","bodies":[],"asks":[{"pairs_within":1},{"ray":{},"pairs_within":1}]}"#);
-        let message =
-            "asks[1] must have exactly one of ray, nearest, linear_cast, motion_cast, pairs_within, contacts_within";
+        let message = "asks[1] must have exactly one of ray, nearest, linear_cast, motion_cast, pairs_within, \
+                       contacts_within, nearest_between, least_pair, any_within";
         assert_eq!((problem.kind, problem.message.as_str()), (Kind::Parse, message));
     }
 }

@@ -61,7 +61,7 @@ pub(super) enum Member<'m, V: Vector> {
     Instance(&'m Instance<V>),
 }
 
-/// A scene that can be a body of other scenes, as often as wanted: each [instance](Scene::insert_group) has its own
+/// A scene that can be a body of other scenes, as often as wanted: each [instance](crate::Scene::insert_group) has its own
 /// pose, and all share one tree. A clone is the same group.
 ///
 /// ```
@@ -150,7 +150,7 @@ impl<V: Vector> Group<V> {
     }
 }
 
-/// A [group](Group) with a pose: a body of a [`Scene`].
+/// A [group](Group) with a pose: a body of a [`Scene`](crate::Scene).
 #[derive(Clone, Debug)]
 pub struct Instance<V: Vector> {
     group: Group<V>,

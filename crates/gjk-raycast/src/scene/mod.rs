@@ -85,7 +85,7 @@ pub use self::instance::{Group, Instance};
 /// body, and [`remove`](Self::remove) takes one out. The tree is adjusted each time, and is rebuilt when that is
 /// worth it.
 ///
-/// [`Among::first_contacts`] finds the pairs of bodies that meet while all of them move during a step, and when.
+/// [`Among::first_contacts`](crate::Among::first_contacts) finds the pairs of bodies that meet while all of them move during a step, and when.
 ///
 /// # Groups
 /// A compound or a mesh that moves as one is a scene of its own, made a [`Group`]. A body of this scene may be an
