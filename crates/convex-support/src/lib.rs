@@ -140,9 +140,8 @@ pub use parallelotope::Parallelotope;
 pub use scalar::Scalar;
 #[cfg(feature = "hull")]
 pub use shapes::Faceted;
-pub use shapes::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Segment, Triangle, TriangleFeature,
-};
+pub use shapes::triangle_point::TriangleFeature;
+pub use shapes::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Segment, Triangle};
 pub use support::{ScalarOf, SupportMap, support_value};
 pub use support_feature::{Feature, Rim};
 pub use vector::{AngularVelocity, Matrix, Rotation, Spin, Vector, Vector3};

@@ -13,7 +13,7 @@ mod points;
 mod polytope;
 mod segment;
 mod triangle;
-mod triangle_point;
+pub(crate) mod triangle_point;
 
 #[cfg(feature = "hull")]
 pub(crate) use polytope::{PLANES, Planes, facet};
@@ -30,4 +30,3 @@ pub use polytope::Faceted;
 pub use polytope::Polytope;
 pub use segment::Segment;
 pub use triangle::Triangle;
-pub use triangle_point::TriangleFeature;
