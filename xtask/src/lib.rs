@@ -12,6 +12,7 @@ mod draw;
 pub mod engine;
 pub mod mesh;
 pub mod output;
+pub mod plot;
 pub mod prove;
 pub mod query;
 pub mod wire;
@@ -37,8 +38,6 @@ pub mod museum;
 pub mod page;
 #[cfg(not(target_os = "unknown"))]
 pub mod paths;
-#[cfg(not(target_os = "unknown"))]
-pub mod plot;
 #[cfg(not(target_os = "unknown"))]
 pub mod table;
 #[cfg(not(target_os = "unknown"))]
