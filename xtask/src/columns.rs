@@ -218,6 +218,8 @@ fn quoted(cell: &str) -> Cow<'_, str> {
 
 #[cfg(test)]
 mod tests {
+    use convex_support::glam::DVec2;
+
     use super::*;
 
     #[test]
@@ -241,7 +243,7 @@ mod tests {
         let double = |value| Field::number::<f64>(value);
         let answer = Answer::default()
             .with("distance", double(0.1))
-            .with("point_a", Field::vector(glam::DVec2::new(1.0, -2.5)))
+            .with("point_a", Field::vector(DVec2::new(1.0, -2.5)))
             .with("normal", Field::Null);
         let names = ["id", "distance", "point_a.1", "normal", "point_a", "error", "lowr"].map(str::to_owned);
         let columns = Columns::new(&names);
