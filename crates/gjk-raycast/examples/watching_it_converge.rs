@@ -1,5 +1,5 @@
 //! What does a query do, step by step? An observer sees every iterate, and the bracket close: of a distance, and of a
-//! ray cast by GJK. The default cast closes its bracket at its end only.
+//! ray cast by GJK. By default, an ellipsoid is cast in closed form, of which there is nothing to see.
 //!
 //! `cargo run -p gjk-raycast --example watching_it_converge`
 

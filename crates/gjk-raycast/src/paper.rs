@@ -29,6 +29,7 @@
 
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
+use smallvec::SmallVec;
 
 use crate::simplex::MAX_POINTS;
 use crate::{Iterate, Ray, SubAlgorithm};
@@ -123,23 +124,23 @@ pub fn gjk_distance<V: Vector>(
     sub_algorithm: &impl SubDistance<V>,
     mut observer: impl FnMut(Iterate<'_, V>),
 ) -> PrintedDistance<V> {
-    let mut kept = Points::default();
+    let mut kept = Points::new();
     let mut v = difference.support(V::axis(0));
     let mut found = PrintedDistance { v, iterations: 0, is_close_enough: false };
     while found.iterations < max_iterations {
         let w = difference.support(-v);
         let (upper, iteration) = (v.norm(), found.iterations);
         let lower = if upper > Scalar::ZERO { v.dot(w) / upper } else { Scalar::ZERO };
-        observer(Iterate { iteration, simplex: kept.points(), v, w, scale: Scalar::ONE, lower, upper });
+        observer(Iterate { iteration, simplex: &kept, v, w, scale: Scalar::ONE, lower, upper });
         found.is_close_enough = v.length_squared() - v.dot(w) <= tolerance * tolerance;
         if found.is_close_enough {
             break;
         }
         found.iterations += 1;
-        kept.push(w);
-        let Some(closest) = sub_algorithm.closest(kept.points()) else { break };
+        add(&mut kept, w);
+        let Some(closest) = sub_algorithm.closest(&kept) else { break };
         v = closest.v;
-        kept.discard(&closest);
+        discard(&mut kept, &closest);
         found.v = v;
     }
     found
@@ -159,7 +160,7 @@ pub fn gjk_ray_cast<V: Vector>(
 ) -> PrintedCast<V> {
     let Ray { source: s, direction: r } = ray;
     let mut cast = PrintedCast { hit: None, lambda: Scalar::ZERO, x: s, n: V::ZERO, iterations: 0 };
-    let mut kept = Points::default();
+    let mut kept = Points::new();
     let mut v = s - object.support(V::axis(0));
     // The first test has no points to compare with: only zero itself is close enough.
     let mut farthest = V::Scalar::ZERO;
@@ -170,9 +171,9 @@ pub fn gjk_ray_cast<V: Vector>(
         }
         let p = object.support(v);
         let w = cast.x - p;
-        let seen = kept.seen_from(cast.x);
+        let seen = seen_from(&kept, cast.x);
         let (iteration, lower, upper) = (cast.iterations, cast.lambda, V::Scalar::infinity());
-        observer(Iterate { iteration, simplex: seen.points(), v, w, scale: Scalar::ONE, lower, upper });
+        observer(Iterate { iteration, simplex: &seen, v, w, scale: Scalar::ONE, lower, upper });
         cast.iterations += 1;
         if v.dot(w) > Scalar::ZERO {
             if v.dot(r) >= Scalar::ZERO {
@@ -183,53 +184,35 @@ pub fn gjk_ray_cast<V: Vector>(
             cast.x = s + r * cast.lambda;
             cast.n = v;
         }
-        kept.push(p);
-        let seen = kept.seen_from(cast.x);
-        let Some(closest) = sub_algorithm.closest(seen.points()) else { break };
+        add(&mut kept, p);
+        let seen = seen_from(&kept, cast.x);
+        let Some(closest) = sub_algorithm.closest(&seen) else { break };
         v = closest.v;
-        farthest = seen.points().iter().fold(Scalar::ZERO, |most, y| y.length_squared().max(most));
-        kept.discard(&closest);
+        farthest = seen.iter().fold(Scalar::ZERO, |most, y| y.length_squared().max(most));
+        discard(&mut kept, &closest);
     }
     cast
 }
 
-/// A set of at most as many points as a simplex has.
-struct Points<V>([V; MAX_POINTS], usize);
+/// The points that are kept, at most as many as a simplex has.
+type Points<V> = SmallVec<[V; MAX_POINTS]>;
 
-impl<V: Vector> Default for Points<V> {
-    fn default() -> Self {
-        Self([V::ZERO; MAX_POINTS], 0)
+/// Adds a point. A set that is full contains zero, as its `v` says, and then no loop comes here; one that rounding keeps
+/// full loses its oldest point.
+fn add<V: Vector>(kept: &mut Points<V>, point: V) {
+    if kept.len() > V::DIM {
+        kept.remove(0);
     }
+    kept.push(point);
 }
 
-impl<V: Vector> Points<V> {
-    fn points(&self) -> &[V] {
-        &self.0[..self.1]
-    }
+/// Keeps the points with weight.
+fn discard<V: Vector>(kept: &mut Points<V>, closest: &SimplexPoint<V>) {
+    let mut weights = closest.weights.into_iter();
+    kept.retain(|_| weights.next().is_some_and(|weight| weight > Scalar::ZERO));
+}
 
-    /// Adds a point. A set that is full contains zero, as its `v` says, and then no loop comes here; one that rounding
-    /// keeps full loses its oldest point.
-    fn push(&mut self, point: V) {
-        if self.1 > V::DIM {
-            self.0.rotate_left(1);
-            self.1 = V::DIM;
-        }
-        self.0[self.1] = point;
-        self.1 += 1;
-    }
-
-    /// Keeps the points with weight.
-    fn discard(&mut self, closest: &SimplexPoint<V>) {
-        let mut kept = Self::default();
-        let with_weight = self.points().iter().zip(closest.weights).filter(|(_, weight)| *weight > Scalar::ZERO);
-        with_weight.for_each(|(&point, _)| kept.push(point));
-        *self = kept;
-    }
-
-    /// The vectors from the points to `x`.
-    fn seen_from(&self, x: V) -> Self {
-        let mut seen = Self::default();
-        self.points().iter().for_each(|&p| seen.push(x - p));
-        seen
-    }
+/// The vectors from the points to `x`.
+fn seen_from<V: Vector>(kept: &Points<V>, x: V) -> Points<V> {
+    kept.iter().map(|&p| x - p).collect()
 }

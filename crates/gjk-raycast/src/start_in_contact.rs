@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// The number of places along a motion that are looked at, at most.
-const MAX_LOOKS: usize = 24;
+const MAX_PLACES_ON_WAY: usize = 24;
 
 /// What a lean linear cast leaves out: what a ray cast does, and the measurements of shapes in contact at the start.
 pub(crate) struct RareInLinearCasts<V: Vector> {
@@ -128,7 +128,7 @@ impl<V: Vector> StartingPair<'_, V> {
         let [never, deeper] = [start.upper, start.lower].map(|s| s.min(self.target) - slack);
         let mut before = self.line(start.normal, zero)?;
         let mut after = if before.closing > zero { self.line(along, V::Scalar::infinity())? } else { before };
-        for look in 0..MAX_LOOKS {
+        for look in 0..MAX_PLACES_ON_WAY {
             let closing = before.closing - after.closing;
             // It is zero if the quotient is NaN, since there is only one line.
             let crossing = ((before.gap - after.gap) / closing).max(zero);

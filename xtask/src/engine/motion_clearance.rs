@@ -63,15 +63,19 @@ impl<V: Space> Question for Pair<V> {
         if !least.upper.as_f64().is_finite() {
             return Err(Problem::new(Kind::NotConverged, "the distance is not known at any time"));
         }
-        Ok(Answer::default()
-            .with("distance", Field::number(least.distance))
-            .with("time", Field::number(least.time))
-            .with("point_a", Field::vector(least.point_a))
-            .with("point_b", Field::vector(least.point_b))
-            .with("normal", Field::maybe_vector(least.normal))
-            .with_finite("lower", least.lower)
-            .with_finite("upper", least.upper)
-            .with("status", status(least.status))
-            .with("iterations", Field::Count(least.iterations)))
+        let answer =
+            Answer::default().with("distance", Field::number(least.distance)).with("time", Field::number(least.time));
+        Ok(with_points(answer, &least).with("iterations", Field::Count(least.iterations)))
     }
+}
+
+/// With what a least distance says beside where and when it is: closest points, normal, bracket and status.
+pub(super) fn with_points<V: Space>(answer: Answer, least: &gjk_raycast::MotionClearance<V>) -> Answer {
+    answer
+        .with("point_a", Field::vector(least.point_a))
+        .with("point_b", Field::vector(least.point_b))
+        .with("normal", Field::maybe_vector(least.normal))
+        .with_finite("lower", least.lower)
+        .with_finite("upper", least.upper)
+        .with("status", status(least.status))
 }

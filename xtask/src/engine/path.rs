@@ -11,6 +11,7 @@ use gjk_raycast::{
 #[cfg(target_family = "wasm")]
 use std::time::Instant as ThreadTime;
 
+use super::motion_clearance::with_points;
 use super::{Ask, EVERY, How, Precision, Query, Question, meeting, path_picture, scalar, status};
 use crate::mesh::Meshes;
 use crate::wire::answer::{Answer, Field, Number};
@@ -182,13 +183,7 @@ fn of_clearance<V: Space>(NearestOnPath { edge, link, body, met, least }: Neares
         .with("time", Field::number(least.time))
         .with("link", Field::Count(link))
         .with("body", Field::Count(body));
-    of_what(answer, met)
-        .with("point_a", Field::vector(least.point_a))
-        .with("point_b", Field::vector(least.point_b))
-        .with("normal", Field::maybe_vector(least.normal))
-        .with_finite("lower", least.lower)
-        .with_finite("upper", least.upper)
-        .with("status", status(least.status))
+    with_points(of_what(answer, met), &least)
 }
 
 impl<V: Space> Way<V> {

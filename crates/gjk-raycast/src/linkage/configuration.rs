@@ -13,7 +13,7 @@ use num_traits::Float;
 
 use super::error::LinkageError;
 use super::frame::{LinkFrame, epsilons};
-use super::joint::Moving;
+use super::joint::MovingFrame;
 use super::joint_trajectory::JointTrajectory as _;
 use super::link_motion::PathEdge;
 use super::path_answer::Met;
@@ -25,7 +25,7 @@ use crate::{DistanceOptions, Scene, SignedDistance, SignedDistanceOptions, dista
 #[derive(Clone, Debug, Default)]
 pub struct ConfigurationWorkspace<V: Vector> {
     /// The frame of each joint that moves, and of each link.
-    moving: Vec<Moving<V>>,
+    moving: Vec<MovingFrame<V>>,
     links: Vec<LinkFrame<V>>,
 }
 
@@ -173,7 +173,7 @@ impl<S: SupportMap> Linkage<S> {
     ) -> Result<Option<LinkClearance<S::Vector>>, LinkageError> {
         let frames = self.place_links(values, workspace)?;
         let end = Float::min(options.limit, Float::infinity());
-        let mut least = Least { limit: end, lower: end, found: None };
+        let mut least = LeastClearance { limit: end, lower: end, found: None };
         for at in self.each_body() {
             let (shape, error) = self.body_at(at, frames)?;
             let there = scene.all().least_signed_distance(&shape, options.with_limit(least.room()));
@@ -288,14 +288,14 @@ impl<S: SupportMap> Linkage<S> {
 type BodyIndex = (usize, usize);
 
 /// The least signed distance so far.
-struct Least<V: Vector> {
+struct LeastClearance<V: Vector> {
     /// Its value, or the limit of the question.
     limit: V::Scalar,
     lower: V::Scalar,
     found: Option<LinkClearance<V>>,
 }
 
-impl<V: Vector> Least<V> {
+impl<V: Vector> LeastClearance<V> {
     /// How far apart bodies may be that count. Depths are compared with one another.
     fn room(&self) -> V::Scalar {
         Float::max(self.limit, Scalar::ZERO)
@@ -312,17 +312,17 @@ impl<V: Vector> Least<V> {
 }
 
 /// The frame of a joint that moves, or of the world.
-fn frame_of<V: Vector>(moving: &[Moving<V>], joint: Option<usize>) -> LinkFrame<V> {
+fn frame_of<V: Vector>(moving: &[MovingFrame<V>], joint: Option<usize>) -> LinkFrame<V> {
     joint.map_or(LinkFrame::WORLD, |joint| moving[joint].frame)
 }
 
 impl<V: Vector> Skeleton<V> {
     /// Places the joints that move.
-    fn place(&self, values: &[V::Scalar], moving: &mut Vec<Moving<V>>) {
+    fn place(&self, values: &[V::Scalar], moving: &mut Vec<MovingFrame<V>>) {
         let edge = PathEdge { from: values, to: values };
         moving.clear();
         for (before, stage) in &self.stages {
-            let carrier = before.map_or(Moving::WORLD, |before| moving[before]);
+            let carrier = before.map_or(MovingFrame::WORLD, |before| moving[before]);
             moving.push(carrier.beyond(stage, edge.state(stage.column, Scalar::ZERO)));
         }
     }

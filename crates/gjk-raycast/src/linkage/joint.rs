@@ -68,7 +68,7 @@ pub(super) struct JointStage<V: Vector> {
 /// A moving frame at one time, with the first and second derivatives of its pose. The frame carries a bound on its
 /// error, and the derivatives do not.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Moving<V: Vector> {
+pub(super) struct MovingFrame<V: Vector> {
     pub(super) frame: LinkFrame<V>,
     /// The angular velocity, as [`axial`] writes it, and its derivative.
     pub(super) spin: V,
@@ -117,7 +117,7 @@ impl<V: Vector> JointStage<V> {
     }
 }
 
-impl<V: Vector> Moving<V> {
+impl<V: Vector> MovingFrame<V> {
     /// The world, at rest.
     pub(super) const WORLD: Self =
         Self { frame: LinkFrame::WORLD, spin: V::ZERO, spin_rate: V::ZERO, velocity: V::ZERO, acceleration: V::ZERO };

@@ -32,8 +32,8 @@ use num_traits::Float;
 use smallvec::SmallVec;
 
 use super::error::LinkageError;
-use super::frame::epsilons;
-use super::joint::{JointStage, Moving};
+use super::frame::{LinkFrame, epsilons};
+use super::joint::{JointStage, MovingFrame};
 use super::joint_trajectory::{JointBounds, JointState};
 use super::link_motion::Route;
 use super::path_answer::{BodyPair, FreeBox, Met};
@@ -336,14 +336,7 @@ fn look<V: Vector, S: SupportMap<Vector = V>, O: SupportMap<Vector = V>>(
         Body::Convex(b) => (size_of(b.core()), b.core().error),
         Body::HalfSpace(b) => (b.offset().abs() / b.length, zero),
     };
-    // The axis of each joint, and its origin.
-    let (mut moving, mut axes) = (Moving::WORLD, SmallVec::<[[V; 2]; 8]>::new());
-    for stage in stages {
-        let value = middle(joint_box[stage.column]);
-        moving = moving.beyond(stage, JointState { value, rate: zero, acceleration: zero, error: zero });
-        axes.push(stage.placed(&moving.frame));
-    }
-    let frame = moving.frame.then(tail);
+    let (frame, axes) = at_middle(route, joint_box);
     let Ok(a) = Posed::from_matrix(a, frame.rotation, frame.translation) else {
         // The place is not finite, and no more will be known after halving.
         return BoxState::Open { after: zero, column: stages.first().map(|stage| stage.column) };
@@ -399,6 +392,21 @@ fn look<V: Vector, S: SupportMap<Vector = V>, O: SupportMap<Vector = V>>(
     let (gap, sinks) = (answer.signed_distance - target, answer.signed_distance - (level - bent));
     let part = gap / sinks;
     BoxState::Open { after: gap * part * part * part, column: best.map(|(_, column)| column) }
+}
+
+/// The frame of the link in the middle of a part, and the axis of each joint on the route, with its origin.
+fn at_middle<V: Vector>(
+    Route { stages, tail }: &Route<V>,
+    joint_box: &[[V::Scalar; 2]],
+) -> (LinkFrame<V>, SmallVec<[[V; 2]; 8]>) {
+    let zero = V::Scalar::ZERO;
+    let (mut moving, mut axes) = (MovingFrame::WORLD, SmallVec::new());
+    for stage in stages {
+        let value = middle(joint_box[stage.column]);
+        moving = moving.beyond(stage, JointState { value, rate: zero, acceleration: zero, error: zero });
+        axes.push(stage.placed(&moving.frame));
+    }
+    (moving.frame.then(tail), axes)
 }
 
 /// A lower bound of `n·x − Σ |change·x − offset|` over all points `x` of a body, where `height` is the body's least

@@ -8,7 +8,7 @@ use convex_support::{BoundingSphere, Matrix as _, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::frame::{LinkFrame, epsilons};
-use super::joint::{JointStage, Moving};
+use super::joint::{JointStage, MovingFrame};
 use super::joint_trajectory::{JointBounds, JointState, JointTrajectory};
 use crate::motion::Bounds;
 use crate::{Displacement, Trajectory, TurningPlane};
@@ -49,9 +49,10 @@ impl<V: Vector> Route<V> {
         &self,
         edge: impl JointTrajectory<Scalar = V::Scalar>,
         time: V::Scalar,
-    ) -> (Moving<V>, LinkFrame<V>) {
+    ) -> (MovingFrame<V>, LinkFrame<V>) {
         let stages = self.stages.iter();
-        let moving = stages.fold(Moving::WORLD, |moving, stage| moving.beyond(stage, edge.state(stage.column, time)));
+        let moving =
+            stages.fold(MovingFrame::WORLD, |moving, stage| moving.beyond(stage, edge.state(stage.column, time)));
         (moving, moving.frame.then(&self.tail))
     }
 
@@ -125,18 +126,18 @@ pub(super) struct LinkMotion<'l, V: Vector, E> {
     bounds: Bounds<V::Scalar>,
     start: V::Scalar,
     /// The result of the last call of [`at`](Self::at), since most times are asked for more than once.
-    last: Cell<(V::Scalar, Moving<V>, LinkFrame<V>)>,
+    last: Cell<(V::Scalar, MovingFrame<V>, LinkFrame<V>)>,
 }
 
 impl<'l, V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> LinkMotion<'l, V, E> {
     /// The motion by a route from a time on, with the [bounds](Route::bounds) for it.
     pub(super) fn new(route: &'l Route<V>, edge: E, bounds: Bounds<V::Scalar>, start: V::Scalar) -> Self {
-        let last = Cell::new((V::Scalar::nan(), Moving::WORLD, LinkFrame::WORLD));
+        let last = Cell::new((V::Scalar::nan(), MovingFrame::WORLD, LinkFrame::WORLD));
         Self { route, edge, bounds, start, last }
     }
 
     /// What [`Route::place`] says of a time after the start.
-    pub(super) fn at(&self, time: V::Scalar) -> (Moving<V>, LinkFrame<V>) {
+    pub(super) fn at(&self, time: V::Scalar) -> (MovingFrame<V>, LinkFrame<V>) {
         let (known, moving, frame) = self.last.get();
         if known == time {
             return (moving, frame);

@@ -21,7 +21,7 @@ use crate::{
 };
 
 /// By how much more than the distance at one time counts as near at first, since it is rounded.
-const ROOM: f64 = 1.0 + 1.0 / 1024.0;
+const NEAR_AT_FIRST: f64 = 1.0 + 1.0 / 1024.0;
 
 impl<S: SupportMap> Linkage<S> {
     /// The least distance along a path of the linkage, of any body of a link from the bodies of a scene at rest, and of
@@ -89,7 +89,7 @@ impl<S: SupportMap> Linkage<S> {
             if answer.nearest.is_none() && !is_again {
                 for time in [zero, duration * number(0.5), duration] {
                     let nearest = self.nearest_at(edge, time, scene, near_enough);
-                    near_enough = Float::min(near_enough, nearest * number(ROOM));
+                    near_enough = Float::min(near_enough, nearest * number(NEAR_AT_FIRST));
                 }
             }
             let (skeleton, tree, space) = (&self.skeleton, scene.tree(), &mut *workspace);

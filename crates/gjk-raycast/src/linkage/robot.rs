@@ -11,7 +11,7 @@ use num_traits::Float;
 
 use super::error::LinkageError;
 use super::frame::{LinkFrame, epsilons};
-use super::joint::{Joint, JointKind, JointStage, Link, Moving};
+use super::joint::{Joint, JointKind, JointStage, Link, MovingFrame};
 use super::joint_trajectory::JointTrajectory as _;
 use super::link_motion::{PathEdge, Route};
 use super::path_answer::{Met, PathContact};
@@ -333,7 +333,7 @@ impl<S: SupportMap> Linkage<S> {
         [normal, point]: [S::Vector; 2],
         rises: &mut [ScalarOf<S>],
     ) -> Result<(), LinkageError> {
-        let mut moving = Moving::WORLD;
+        let mut moving = MovingFrame::WORLD;
         let view = self.skeleton.views.get(link).ok_or(LinkageError::NoSuchBody { link, body: 0 })?;
         for stage in &view.route.stages {
             moving = moving.beyond(stage, edge.state(stage.column, time));

@@ -13,7 +13,7 @@ use convex_support::{Aabb, BoundingSphere, BoxDistance, Bvh, Scalar, SupportMap,
 use num_traits::Float as _;
 
 use super::frame::{LinkFrame, epsilons};
-use super::joint::Moving;
+use super::joint::MovingFrame;
 use super::joint_trajectory::JointTrajectory;
 use super::link_motion::LinkMotion;
 use super::robot::{LinkView, Skeleton};
@@ -50,7 +50,7 @@ pub struct PathWorkspace<V: Vector> {
     /// Bounds on the speed, acceleration and jerk of the link of each view along the edge.
     bounds: Vec<Bounds<V::Scalar>>,
     /// How each joint moves in the middle of a part, as the world sees it.
-    moving: Vec<Moving<V>>,
+    moving: Vec<MovingFrame<V>>,
     /// The views that are not known to be free, for each of the nested parts that are being looked at.
     views: Vec<usize>,
     /// The indices of the bodies that are near a link.
@@ -173,7 +173,7 @@ impl<'s, V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> Sweep<'s, V, 
     fn place(&mut self, time: V::Scalar) {
         self.space.moving.clear();
         for (before, stage) in &self.skeleton.stages {
-            let carrier = before.map_or(Moving::WORLD, |before| self.space.moving[before]);
+            let carrier = before.map_or(MovingFrame::WORLD, |before| self.space.moving[before]);
             self.space.moving.push(carrier.beyond(stage, self.edge.state(stage.column, time)));
         }
     }
@@ -186,7 +186,7 @@ impl<'s, V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> Sweep<'s, V, 
         let placed = match base {
             Some(_) => route.place(self.edge, from + half),
             None => {
-                let moving = route.stages.last().map_or(Moving::WORLD, |stage| self.space.moving[stage.column]);
+                let moving = route.stages.last().map_or(MovingFrame::WORLD, |stage| self.space.moving[stage.column]);
                 (moving, moving.frame.then(&route.tail))
             }
         };
@@ -233,7 +233,7 @@ impl<V: Vector> SweptBall<V> {
     fn of(
         ball: &BoundingSphere<V>,
         distance: V::Scalar,
-        (moving, frame): &(Moving<V>, LinkFrame<V>),
+        (moving, frame): &(MovingFrame<V>, LinkFrame<V>),
         bounds: &Bounds<V::Scalar>,
         half: V::Scalar,
     ) -> Self {

@@ -14,7 +14,7 @@ use crate::{Distance, Impact, MotionCastOptions, MotionIterate, Outcome, RayCast
 
 /// Times to examine, after which to give up. A minimum takes about twenty, and each other minimum that is about as low
 /// takes as many: bodies that spin for long near one another take the most.
-const MAX_LOOKS: usize = 100_000;
+const MAX_LOOKS_FOR_LEAST: usize = 100_000;
 
 /// The least distance of two moving bodies, which may turn, over a time: how near they come, when and where.
 ///
@@ -154,7 +154,7 @@ impl<V: Vector> MotionClearanceOptions<V> {
     #[must_use]
     pub fn lean() -> Self {
         let MotionCastOptions { max_time, axis, rare, .. } = MotionCastOptions::lean();
-        Self { max_time, tolerance: V::Scalar::EPSILON.sqrt(), axis, max_iterations: MAX_LOOKS, rare }
+        Self { max_time, tolerance: V::Scalar::EPSILON.sqrt(), axis, max_iterations: MAX_LOOKS_FOR_LEAST, rare }
     }
 
     /// The options, if they are numbers, with an end that is not negative.

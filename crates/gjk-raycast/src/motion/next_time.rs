@@ -11,7 +11,7 @@ use super::trajectory::TurningPlane;
 /// The next interval is this part of the longest one that can be expected to be proved.
 const CAUTION: f64 = 0.9;
 /// If an interval was too long to be proved, the next one is no longer than this part of it, if the bound for it is known.
-const NEARER: f64 = 0.8;
+const SHORTER: f64 = 0.8;
 /// The part of the third-order change in a step that the step leaves undone.
 const LEFT: f64 = 0.05;
 /// Steps of Newton's method from the root of a parabola to that of a cubic.
@@ -40,7 +40,7 @@ impl<V: Vector> Search<'_, V> {
         let next = time + step;
         if let Some(ahead) = self.ahead {
             // The interval up to there was too long to be proved.
-            let part = if self.falling.is_some() { NEARER } else { 0.5 };
+            let part = if self.falling.is_some() { SHORTER } else { 0.5 };
             let nearer = time + (ahead.time - time) * from_f64(part);
             return Some(if next < nearer { next } else { nearer }).filter(|&next| next > time && next < ahead.time);
         }

@@ -8,7 +8,7 @@ use super::answers::OfPair;
 use super::asked::Asked;
 use super::bounds::Question;
 use super::instance::Id;
-use super::{Body, PairContact, Scene, SceneDistance, SceneRayCast, Slot, Work};
+use super::{Body, Occupant, PairContact, Scene, SceneDistance, SceneRayCast, Work};
 use crate::{Contact, DistanceOptions, HalfSpace, Ray, RayCastError, RayCastOptions};
 
 /// The bodies of a scene that a question is about: all of them, or those that a closure picks, made by [`Scene::all`]
@@ -138,7 +138,7 @@ impl<'s, S: SupportMap> Among<'s, S> {
 
     /// What is at this index, if the question is about it.
     #[inline]
-    pub(super) fn slot(&self, index: usize) -> Option<&'s Slot<S>> {
+    pub(super) fn slot(&self, index: usize) -> Option<&'s Occupant<S>> {
         if self.bodies.is_some_and(|picks| !picks(index)) {
             return None;
         }
@@ -146,7 +146,7 @@ impl<'s, S: SupportMap> Among<'s, S> {
     }
 
     /// The half-spaces that the question is about, with their indices.
-    pub(crate) fn half_spaces(&self) -> impl Iterator<Item = (usize, &'s HalfSpace<S::Vector>)> {
+    pub(crate) fn half_spaces(&self) -> impl Iterator<Item = (usize, &'s HalfSpace<S::Vector>)> + use<'s, S> {
         let among = *self;
         among.scene.half_spaces.iter().filter_map(move |&index| match among.slot(index)?.body()? {
             Body::HalfSpace(half_space) => Some((index, half_space)),

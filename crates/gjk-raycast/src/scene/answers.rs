@@ -360,20 +360,13 @@ pub(super) trait OfPair {
     fn ids(&self) -> [Id; 2];
 }
 
-impl<V: Vector> OfPair for PairDistance<V> {
-    fn ids(&self) -> [Id; 2] {
-        [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
-    }
+macro_rules! of_pair {
+    ($($name:ident),*) => {$(
+        impl<V: Vector> OfPair for $name<V> {
+            fn ids(&self) -> [Id; 2] {
+                [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
+            }
+        }
+    )*};
 }
-
-impl<V: Vector> OfPair for PairImpact<V> {
-    fn ids(&self) -> [Id; 2] {
-        [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
-    }
-}
-
-impl<V: Vector> OfPair for PairContact<V> {
-    fn ids(&self) -> [Id; 2] {
-        [Id { body: self.a, member: self.member_a }, Id { body: self.b, member: self.member_b }]
-    }
-}
+of_pair!(PairDistance, PairImpact, PairContact);

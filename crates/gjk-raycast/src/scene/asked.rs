@@ -6,7 +6,7 @@ use convex_support::{Aabb, ScalarOf, SupportMap};
 
 use super::bounds::Question;
 use super::instance::{Id, Placed};
-use super::{Body, Slot};
+use super::{Body, Occupant};
 
 /// What a single query is about: a body of the scene, or a member of an instance with its box.
 pub(super) enum Asked<'a, 'm, S: SupportMap> {
@@ -40,7 +40,7 @@ macro_rules! asked_pair {
 }
 pub(super) use {asked, asked_pair};
 
-impl<S: SupportMap> Slot<S> {
+impl<S: SupportMap> Occupant<S> {
     /// Calls `tell` for the body, which has this index and bound, or for each member of the instance whose box has a
     /// bound of at most `limit`. The call returns the limit from then on, or breaks off.
     pub(super) fn each_member<Q: Question<S::Vector>>(

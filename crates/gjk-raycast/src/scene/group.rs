@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 use convex_support::{Bvh, SupportMap, Vector};
 
 use super::instance::{Group, Member, Members};
-use super::{Scene, SceneError, Slot};
+use super::{Occupant, Scene, SceneError};
 
 /// How deep groups may be nested.
 const MAX_LEVELS: usize = 16;
@@ -21,8 +21,8 @@ impl<S: SupportMap + Send + Sync> Members<S::Vector> for Scene<S> {
 
     fn member(&self, index: usize) -> Option<Member<'_, S::Vector>> {
         match self.slot(index)? {
-            Slot::Body(body) => Some(Member::Shape(body.convex()?)),
-            Slot::Instance(instance) => Some(Member::Instance(instance)),
+            Occupant::Body(body) => Some(Member::Shape(body.convex()?)),
+            Occupant::Instance(instance) => Some(Member::Instance(instance)),
         }
     }
 }
@@ -50,7 +50,7 @@ impl<V: Vector> Group<V> {
         for slot in &scene.bodies {
             first.push(end);
             let (members, inner) = match slot {
-                Some(Slot::Instance(instance)) => (instance.group().end, instance.group().levels),
+                Some(Occupant::Instance(instance)) => (instance.group().end, instance.group().levels),
                 _ => (1, 0),
             };
             end = end.checked_add(members).ok_or(SceneError::TooDeep)?;

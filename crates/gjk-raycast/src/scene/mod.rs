@@ -97,7 +97,7 @@ pub use self::instance::{Group, Instance};
 #[doc(alias("world", "broad_phase", "query_pipeline", "collision_world", "compound", "trimesh"))]
 #[derive(Clone, Debug)]
 pub struct Scene<S: SupportMap> {
-    bodies: Vec<Option<Slot<S>>>,
+    bodies: Vec<Option<Occupant<S>>>,
     tree: Bvh<S::Vector>,
     /// The number of bodies, where each member of an instance counts as one.
     members: usize,
@@ -111,12 +111,12 @@ pub struct Scene<S: SupportMap> {
 
 /// What is at an index.
 #[derive(Clone, Debug)]
-enum Slot<S: SupportMap> {
+enum Occupant<S: SupportMap> {
     Body(Body<S>),
     Instance(Box<Instance<S::Vector>>),
 }
 
-impl<S: SupportMap> Slot<S> {
+impl<S: SupportMap> Occupant<S> {
     fn body(&self) -> Option<&Body<S>> {
         match self {
             Self::Body(body) => Some(body),
@@ -150,10 +150,10 @@ impl<S: SupportMap> Scene<S> {
     /// # Errors
     /// [`SceneError::NotFinite`] for the first body whose box is not finite.
     pub fn new(bodies: impl IntoIterator<Item = S>) -> Result<Self, SceneError> {
-        let bodies: Vec<_> = bodies.into_iter().map(|body| Some(Slot::Body(Body::Convex(body)))).collect();
+        let bodies: Vec<_> = bodies.into_iter().map(|body| Some(Occupant::Body(Body::Convex(body)))).collect();
         let mut boxes = Vec::with_capacity(bodies.len());
         for (index, slot) in bodies.iter().enumerate() {
-            let around = slot.as_ref().and_then(Slot::around);
+            let around = slot.as_ref().and_then(Occupant::around);
             boxes.push(around.ok_or(SceneError::NotFinite { body: index })?);
         }
         let members = bodies.len();
@@ -193,7 +193,7 @@ impl<S: SupportMap> Scene<S> {
     }
 
     #[inline]
-    fn slot(&self, index: usize) -> Option<&Slot<S>> {
+    fn slot(&self, index: usize) -> Option<&Occupant<S>> {
         self.bodies.get(index)?.as_ref()
     }
 
@@ -221,7 +221,7 @@ impl<S: SupportMap> Scene<S> {
     pub fn insert(&mut self, body: S) -> Result<usize, SceneError> {
         let index = self.next_index();
         let around = outer_box(&body).ok_or(SceneError::NotFinite { body: index })?;
-        self.put(index, Slot::Body(Body::Convex(body)));
+        self.put(index, Occupant::Body(Body::Convex(body)));
         self.tree.insert(index, around);
         Ok(index)
     }
@@ -238,7 +238,7 @@ impl<S: SupportMap> Scene<S> {
         let instance = Instance::new(index, group.clone(), pose)?;
         let around = instance.around();
         self.members.checked_add(group.len()).ok_or(SceneError::TooDeep)?;
-        self.put(index, Slot::Instance(Box::new(instance)));
+        self.put(index, Occupant::Instance(Box::new(instance)));
         self.tree.insert(index, around);
         Ok(index)
     }
@@ -248,7 +248,7 @@ impl<S: SupportMap> Scene<S> {
     /// # Errors
     /// [`SceneError::NoSuchInstance`], [`SceneError::NoPose`] or [`SceneError::NotFinite`]. The scene is then as before.
     pub fn place(&mut self, body: usize, pose: Pose<S::Vector>) -> Result<(), SceneError> {
-        let Some(Some(Slot::Instance(instance))) = self.bodies.get_mut(body) else {
+        let Some(Some(Occupant::Instance(instance))) = self.bodies.get_mut(body) else {
             return Err(SceneError::NoSuchInstance { body });
         };
         instance.place(body, pose)?;
@@ -263,13 +263,13 @@ impl<S: SupportMap> Scene<S> {
     /// Adds a half-space, and returns its index.
     pub fn insert_half_space(&mut self, half_space: HalfSpace<S::Vector>) -> usize {
         let index = self.next_index();
-        self.put(index, Slot::Body(Body::HalfSpace(half_space)));
+        self.put(index, Occupant::Body(Body::HalfSpace(half_space)));
         let place = self.half_spaces.partition_point(|&other| other < index);
         self.half_spaces.insert(place, index);
         index
     }
 
-    fn put(&mut self, index: usize, slot: Slot<S>) {
+    fn put(&mut self, index: usize, slot: Occupant<S>) {
         self.members += slot.members();
         if self.free.last() == Some(&index) {
             self.free.pop();
@@ -284,8 +284,8 @@ impl<S: SupportMap> Scene<S> {
     pub fn remove(&mut self, body: usize) -> Option<Body<S>> {
         self.get(body)?;
         match self.take(body)? {
-            Slot::Body(removed) => Some(removed),
-            Slot::Instance(_) => None,
+            Occupant::Body(removed) => Some(removed),
+            Occupant::Instance(_) => None,
         }
     }
 
@@ -293,12 +293,12 @@ impl<S: SupportMap> Scene<S> {
     pub fn remove_instance(&mut self, body: usize) -> Option<Instance<S::Vector>> {
         self.instance(body)?;
         match self.take(body)? {
-            Slot::Instance(removed) => Some(*removed),
-            Slot::Body(_) => None,
+            Occupant::Instance(removed) => Some(*removed),
+            Occupant::Body(_) => None,
         }
     }
 
-    fn take(&mut self, index: usize) -> Option<Slot<S>> {
+    fn take(&mut self, index: usize) -> Option<Occupant<S>> {
         let removed = self.bodies.get_mut(index)?.take()?;
         self.members -= removed.members();
         self.free.push(index);
@@ -314,7 +314,7 @@ impl<S: SupportMap> Scene<S> {
     /// [`SceneError::NoSuchBody`] if no bounded body has this index; [`SceneError::NotFinite`] if the box of the new
     /// one is not finite. The scene is then as before.
     pub fn replace(&mut self, index: usize, body: S) -> Result<S, SceneError> {
-        let Some(Some(Slot::Body(Body::Convex(place)))) = self.bodies.get_mut(index) else {
+        let Some(Some(Occupant::Body(Body::Convex(place)))) = self.bodies.get_mut(index) else {
             return Err(SceneError::NoSuchBody { body: index });
         };
         let around = outer_box(&body).ok_or(SceneError::NotFinite { body: index })?;
@@ -330,7 +330,7 @@ impl<S: SupportMap> Scene<S> {
     /// and the rest are moved.
     pub fn update(&mut self, mut moved: impl FnMut(usize, &S) -> S) -> Result<(), SceneError> {
         self.refit(|index, slot| {
-            let Slot::Body(Body::Convex(body)) = slot else { return Ok(slot.around()) };
+            let Occupant::Body(Body::Convex(body)) = slot else { return Ok(slot.around()) };
             let next = moved(index, body);
             let around = outer_box(&next).ok_or(SceneError::NotFinite { body: index })?;
             *body = next;
@@ -349,7 +349,7 @@ impl<S: SupportMap> Scene<S> {
         mut moved: impl FnMut(usize, &Instance<S::Vector>) -> Pose<S::Vector>,
     ) -> Result<(), SceneError> {
         self.refit(|index, slot| {
-            if let Slot::Instance(instance) = slot {
+            if let Occupant::Instance(instance) = slot {
                 instance.place(index, moved(index, instance))?;
             }
             Ok(slot.around())
@@ -359,7 +359,7 @@ impl<S: SupportMap> Scene<S> {
     /// Gives every bounded body the box that `moved` returns, or its own if that is refused; returns the first error.
     fn refit(
         &mut self,
-        mut moved: impl FnMut(usize, &mut Slot<S>) -> Result<Option<Aabb<S::Vector>>, SceneError>,
+        mut moved: impl FnMut(usize, &mut Occupant<S>) -> Result<Option<Aabb<S::Vector>>, SceneError>,
     ) -> Result<(), SceneError> {
         let mut refused = Ok(());
         let bodies = &mut self.bodies;

@@ -15,7 +15,7 @@ use super::bounds::{HeightBound, MovingBalls, swept};
 use super::hits::swept_shape;
 use super::instance::Id;
 use super::pairs::Pairing;
-use super::{Body, Scene, Slot};
+use super::{Body, Occupant, Scene};
 use crate::motion::{check, checked};
 use crate::{ChainMotion, Impact, LinearCastOptions, Motion, MotionCast, MotionCastOptions, RayCastError, RigidMotion};
 
@@ -57,7 +57,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: MotionCastOptions<S::Vector>,
         contacts: &mut Vec<PairImpact<S::Vector>>,
     ) -> Result<SceneFirstContact<S::Vector>, RayCastError> {
-        Moving { pairing: Pairing::within(*self), motions: [motion; 2], options: checked(options)? }
+        MovingPairs { pairing: Pairing::within(*self), motions: [motion; 2], options: checked(options)? }
             .answer(Some(reuse(contacts)))
     }
 
@@ -70,7 +70,7 @@ impl<S: SupportMap> Among<'_, S> {
         motion: Motions<'_, S::Vector>,
         options: MotionCastOptions<S::Vector>,
     ) -> Result<SceneFirstContact<S::Vector>, RayCastError> {
-        Moving { pairing: Pairing::within(*self), motions: [motion; 2], options: checked(options)? }.answer(None)
+        MovingPairs { pairing: Pairing::within(*self), motions: [motion; 2], options: checked(options)? }.answer(None)
     }
 
     /// Finds all pairs of one of these bodies, `a`, and any of another scene, `b`, that meet while each moves as the
@@ -86,7 +86,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: MotionCastOptions<S::Vector>,
         contacts: &mut Vec<PairImpact<S::Vector>>,
     ) -> Result<SceneFirstContact<S::Vector>, RayCastError> {
-        Moving { pairing: Pairing::between(*self, other), motions, options: checked(options)? }
+        MovingPairs { pairing: Pairing::between(*self, other), motions, options: checked(options)? }
             .answer(Some(reuse(contacts)))
     }
 
@@ -100,12 +100,12 @@ impl<S: SupportMap> Among<'_, S> {
         motions: [Motions<'_, S::Vector>; 2],
         options: MotionCastOptions<S::Vector>,
     ) -> Result<SceneFirstContact<S::Vector>, RayCastError> {
-        Moving { pairing: Pairing::between(*self, other), motions, options: checked(options)? }.answer(None)
+        MovingPairs { pairing: Pairing::between(*self, other), motions, options: checked(options)? }.answer(None)
     }
 }
 
 /// A question about pairs that move.
-struct Moving<'s, 'f, S: SupportMap, T: SupportMap<Vector = S::Vector>> {
+struct MovingPairs<'s, 'f, S: SupportMap, T: SupportMap<Vector = S::Vector>> {
     pairing: Pairing<'s, S, T>,
     motions: [Motions<'f, S::Vector>; 2],
     /// Checked.
@@ -115,7 +115,7 @@ struct Moving<'s, 'f, S: SupportMap, T: SupportMap<Vector = S::Vector>> {
 /// A pair of indices whose boxes meet, and the time from which on they do.
 type Candidate<N> = (N, [usize; 2]);
 
-impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Moving<'_, '_, S, T> {
+impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> MovingPairs<'_, '_, S, T> {
     /// Casts the pairs that may meet, in the order of the times from which on they may. A pair counts from the time of
     /// its contact or from when its boxes meet, whichever is later, as for [casts](super::hits).
     fn answer(
@@ -204,14 +204,10 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Moving<'_, '_, S, T> {
             add([i, j]);
             ControlFlow::Continue(())
         });
-        for (index, half_space) in a.half_spaces() {
-            let moves = self.motions[0](index) != RigidMotion::default();
-            let boxes = second.as_ref().unwrap_or(&first);
-            nodes += over(boxes, &HeightBound::new(half_space), near, moves, |other| add([index, other]));
-        }
-        for (index, half_space) in b.half_spaces().filter(|_| !same) {
-            let moves = self.motions[1](index) != RigidMotion::default();
-            nodes += over(&first, &HeightBound::new(half_space), near, moves, |other| add([other, index]));
+        for of in self.pairing.half_spaces() {
+            let moves = self.motions[usize::from(of.is_second)](of.index) != RigidMotion::default();
+            let boxes = if of.is_second { &first } else { second.as_ref().unwrap_or(&first) };
+            nodes += over(boxes, &of.height, near, moves, |other| add(of.pair(other)));
         }
         self.pairing.work.nodes += nodes;
         found.sort_unstable_by(|p, q| p.partial_cmp(q).unwrap_or(core::cmp::Ordering::Equal));
@@ -253,11 +249,11 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Moving<'_, '_, S, T> {
         };
         let [of_a, of_b] = self.motions_of([i, j]);
         let next = match (a, b) {
-            (Slot::Body(a), Slot::Body(b)) => tell([Id::of(i), Id::of(j)], from, Asked::Own(a), Asked::Own(b)),
-            (Slot::Body(a), b) => self.met_by(a, [of_a, of_b], (b, j, from), &mut |id, from, b| {
+            (Occupant::Body(a), Occupant::Body(b)) => tell([Id::of(i), Id::of(j)], from, Asked::Own(a), Asked::Own(b)),
+            (Occupant::Body(a), b) => self.met_by(a, [of_a, of_b], (b, j, from), &mut |id, from, b| {
                 tell([Id::of(i), id], from, Asked::Own(a), b)
             }),
-            (a, Slot::Body(b)) => self.met_by(b, [of_b, of_a], (a, i, from), &mut |id, from, a| {
+            (a, Occupant::Body(b)) => self.met_by(b, [of_b, of_a], (a, i, from), &mut |id, from, a| {
                 tell([id, Id::of(j)], from, a, Asked::Own(b))
             }),
             (a, b) => a.each_member((i, from), &anywhere(), self.options.max_time, &mut 0, &mut |id_a, from, a| {
@@ -275,7 +271,7 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Moving<'_, '_, S, T> {
         &self,
         body: &Body<A>,
         [own, other]: [RigidMotion<S::Vector>; 2],
-        (slot, index, from): (&Slot<R>, usize, ScalarOf<S>),
+        (slot, index, from): (&Occupant<R>, usize, ScalarOf<S>),
         tell: &mut impl FnMut(Id, ScalarOf<S>, Asked<'_, '_, R>) -> ControlFlow<(), ScalarOf<S>>,
     ) -> ControlFlow<(), ScalarOf<S>> {
         let end = self.options.max_time;
@@ -344,7 +340,7 @@ fn swept_tree<S: SupportMap>(
     tree.refit(|index| {
         let around = among.scene.tree.get(index).unwrap_or_else(Aabb::everything);
         let slot = among.slot(index);
-        if slot.is_none_or(|slot| matches!(slot, Slot::Body(Body::HalfSpace(_)))) {
+        if slot.is_none_or(|slot| matches!(slot, Occupant::Body(Body::HalfSpace(_)))) {
             return around;
         }
         let motion = motion(index);
@@ -352,7 +348,7 @@ fn swept_tree<S: SupportMap>(
         let options = MotionCastOptions { target_distance: Scalar::ZERO, ..options };
         let swept = if !turns(&motion) {
             swept(around, motion.velocity, options.max_time)
-        } else if let Some(Body::Convex(body)) = slot.and_then(Slot::body) {
+        } else if let Some(Body::Convex(body)) = slot.and_then(Occupant::body) {
             MovingBalls::around(body, &motion, &options)
         } else {
             // The members of an instance are in the ball around its box.

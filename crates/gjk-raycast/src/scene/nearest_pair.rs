@@ -3,17 +3,16 @@
 
 use core::convert::Infallible;
 use core::ops::ControlFlow;
+#[cfg(feature = "rayon")]
+use core::sync::atomic::{AtomicU64, Ordering};
 
 use convex_support::{NearestPairs, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::Scene;
 use super::among::Among;
-#[cfg(feature = "rayon")]
-use super::answers::Work;
-use super::answers::{PairDistance, SceneAnyWithin, ScenePair};
+use super::answers::{PairDistance, SceneAnyWithin, ScenePair, Work};
 use super::asked::{Asked, asked, asked_pair};
-use super::bounds::HeightBound;
 use super::instance::Id;
 use super::nearest::distance_of as distance_of_boxes;
 use super::pairs::{Pairing, TestPair, beside_box, distance_of};
@@ -82,12 +81,12 @@ impl<S: SupportMap> Among<'_, S> {
         within: ScalarOf<S>,
         options: DistanceOptions<S::Vector>,
     ) -> SceneAnyWithin<usize> {
-        let mut any = Any { within, any: false, undecided: None };
+        let mut any = Any::none(within, options);
         let Ok(work) = self.in_order(&distance_of_boxes(shape), within, |id, from, body| {
-            let distance = asked!(body, body => body.distance_from(shape, options.with_limit(within)));
+            let distance = asked!(body, body => body.distance_from(shape, any.options));
             Ok::<_, Infallible>(any.add(id.body, from, &distance).map_continue(|()| (within, Id::LAST)))
         });
-        SceneAnyWithin { any: any.any, undecided: any.undecided, work }
+        any.answer(work)
     }
 
     /// Whether any two of these bodies are no farther than `within` from each other: whether
@@ -120,36 +119,6 @@ fn up_to<N>(end: N) -> Limit<N> {
     (end, [Id::LAST; 2])
 }
 
-/// A question about the pairs whose bound may be below a limit. `ask` takes the bound and the pair, and returns the next
-/// limit, or a break, which ends the search.
-struct Limited<N, F> {
-    limit: Limit<N>,
-    ask: F,
-}
-
-impl<S, T, F> TestPair<S, T> for Limited<ScalarOf<S>, F>
-where
-    S: SupportMap,
-    T: SupportMap<Vector = S::Vector>,
-    F: FnMut(ScalarOf<S>, AskedPair<'_, '_, '_, '_, S, T>) -> ControlFlow<(), Limit<ScalarOf<S>>>,
-{
-    fn limit(&self) -> ScalarOf<S> {
-        self.limit.0
-    }
-
-    fn is_late(&self, pair: [Id; 2], from: ScalarOf<S>) -> bool {
-        from >= self.limit.0 && pair >= self.limit.1
-    }
-
-    fn test(&mut self, pair: [Id; 2], from: ScalarOf<S>, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>) -> ControlFlow<()> {
-        self.limit = (self.ask)(from, (pair, a, b))?;
-        ControlFlow::Continue(())
-    }
-}
-
-/// The bodies of a pair, or their members.
-type AskedPair<'a, 'm, 'b, 'n, S, T> = ([Id; 2], Asked<'a, 'm, S>, Asked<'b, 'n, T>);
-
 impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'_, S, T> {
     /// Tests the pairs of bounded bodies whose bound may be below the limit, mostly in the order of their bounds.
     fn in_order(
@@ -169,20 +138,10 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'_, S, T> {
 
     /// Tests the pairs with half-spaces in the same way.
     fn half_spaces_in_order(&mut self, question: &mut impl TestPair<S, T>) -> ControlFlow<()> {
-        let (Self { a, b, same, .. }, mut ended) = (*self, ControlFlow::Continue(()));
-        for (index, half_space) in a.half_spaces() {
-            let height = HeightBound::new(half_space);
-            let nodes = b.scene.tree.search(&height, question.limit(), |other, from| {
-                ended = self.ask([index, other], from, &|_| height, question);
-                ended.map_continue(|()| question.limit())
-            });
-            self.work.nodes += nodes;
-            ended?;
-        }
-        for (index, half_space) in b.half_spaces().filter(|_| !same) {
-            let height = HeightBound::new(half_space);
-            let nodes = a.scene.tree.search(&height, question.limit(), |other, from| {
-                ended = self.ask([other, index], from, &|_| height, question);
+        let mut ended = ControlFlow::Continue(());
+        for of in self.half_spaces() {
+            let nodes = of.others.search(&of.height, question.limit(), |other, from| {
+                ended = self.ask(of.pair(other), from, &|_| of.height, question);
                 ended.map_continue(|()| question.limit())
             });
             self.work.nodes += nodes;
@@ -195,28 +154,49 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'_, S, T> {
 /// The nearest pair of those that were tested so far. As for [bodies](Among::nearest), a pair counts from its distance
 /// or from that of its boxes, whichever is farther.
 #[derive(Clone, Copy)]
-struct Least<V: Vector> {
-    nearest: Option<PairDistance<V>>,
+struct Nearest<V: Vector> {
+    pair: Option<PairDistance<V>>,
     limit: Limit<V::Scalar>,
     lower: V::Scalar,
+    options: DistanceOptions<V>,
 }
 
-impl<V: Vector> Least<V> {
-    fn add<S: SupportMap<Vector = V>, T: SupportMap<Vector = V>>(
-        &mut self,
-        from: V::Scalar,
-        (pair, a, b): AskedPair<'_, '_, '_, '_, S, T>,
-        options: DistanceOptions<V>,
-    ) -> Limit<V::Scalar> {
-        let options = options.with_limit(self.limit.0);
+impl<V: Vector> Nearest<V> {
+    fn none(options: DistanceOptions<V>) -> Self {
+        // NaN is no limit.
+        let end = Float::min(options.limit, Float::infinity());
+        Self { pair: None, limit: up_to(end), lower: end, options }
+    }
+
+    fn answer<S, T>(self, pairing: Pairing<'_, S, T>) -> ScenePair<V>
+    where
+        S: SupportMap<Vector = V>,
+        T: SupportMap<Vector = V>,
+    {
+        let work = pairing.finish();
+        ScenePair { nearest: self.pair, lower: if work.cancelled { Scalar::ZERO } else { self.lower }, work }
+    }
+}
+
+impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> TestPair<S, T> for Nearest<S::Vector> {
+    fn limit(&self) -> ScalarOf<S> {
+        self.limit.0
+    }
+
+    fn is_late(&self, pair: [Id; 2], from: ScalarOf<S>) -> bool {
+        from >= self.limit.0 && pair >= self.limit.1
+    }
+
+    fn test(&mut self, pair: [Id; 2], from: ScalarOf<S>, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>) -> ControlFlow<()> {
+        let options = self.options.with_limit(self.limit.0);
         if let Some(distance) = asked_pair!(a, b => distance_of(a, b, options)) {
             self.lower = Float::min(self.lower, Float::max(distance.lower, from));
             let key = (Float::max(distance.distance, from), pair);
             if key < self.limit {
-                (self.nearest, self.limit) = (Some(PairDistance::of(pair, distance)), key);
+                (self.pair, self.limit) = (Some(PairDistance::of(pair, distance)), key);
             }
         }
-        self.limit
+        ControlFlow::Continue(())
     }
 }
 
@@ -226,32 +206,12 @@ fn least<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
     boxes: NearestPairs<'_, S::Vector>,
     options: DistanceOptions<S::Vector>,
 ) -> ScenePair<S::Vector> {
-    let mut found = nothing(options);
-    let ask = |from, pair: AskedPair<'_, '_, '_, '_, S, T>| ControlFlow::Continue(found.add(from, pair, options));
-    let mut question = Limited { limit: up_to(no_limit_if_nan(options.limit)), ask };
-    if pairing.half_spaces_in_order(&mut question).is_continue() {
+    let mut nearest = Nearest::none(options);
+    if pairing.half_spaces_in_order(&mut nearest).is_continue() {
         // The search is over, so a break no longer matters.
-        let _ = pairing.in_order(boxes, &mut question);
+        let _ = pairing.in_order(boxes, &mut nearest);
     }
-    answer(found, pairing)
-}
-
-/// NaN is no limit.
-fn no_limit_if_nan<N: Scalar>(limit: N) -> N {
-    Float::min(limit, N::infinity())
-}
-
-fn nothing<V: Vector>(options: DistanceOptions<V>) -> Least<V> {
-    let end = no_limit_if_nan(options.limit);
-    Least { nearest: None, limit: up_to(end), lower: end }
-}
-
-fn answer<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
-    Least { nearest, lower, .. }: Least<S::Vector>,
-    pairing: Pairing<'_, S, T>,
-) -> ScenePair<S::Vector> {
-    let work = pairing.finish();
-    ScenePair { nearest, lower: if work.cancelled { Scalar::ZERO } else { lower }, work }
+    nearest.answer(pairing)
 }
 
 /// The nearest pair, by all threads. They share the least distance found so far, which changes what is tested, but
@@ -262,79 +222,121 @@ fn par_least<S: SupportMap + Sync, T: SupportMap<Vector = S::Vector> + Sync>(
     mut boxes: NearestPairs<'_, S::Vector>,
     options: DistanceOptions<S::Vector>,
 ) -> ScenePair<S::Vector> {
-    use core::sync::atomic::{AtomicU64, Ordering};
     use rayon::prelude::*;
     /// Enough that idle threads find another part, and few enough that each begins with pairs that are near.
     const PARTS: usize = 64;
     /// What one thread tests before: then the limit is mostly near the end already.
     const BEFORE: usize = 64;
-    let mut found = nothing(options);
-    let limit = found.limit;
-    let ask = |from, pair: AskedPair<'_, '_, '_, '_, S, T>| ControlFlow::Continue(found.add(from, pair, options));
-    let mut question = Limited { limit, ask };
-    let mut ended = pairing.half_spaces_in_order(&mut question);
+    let mut nearest = Nearest::none(options);
+    let mut ended = pairing.half_spaces_in_order(&mut nearest);
     let mut left = BEFORE;
     while ended.is_continue()
         && left > 0
-        && let Some((pair, from)) = boxes.next(question.limit.0)
+        && let Some((pair, from)) = boxes.next(nearest.limit.0)
     {
-        (left, ended) = (left - 1, pairing.ask(pair, from, &beside_box, &mut question));
+        (left, ended) = (left - 1, pairing.ask(pair, from, &beside_box, &mut nearest));
     }
-    let limit = question.limit;
     if ended.is_break() {
         pairing.work.nodes += boxes.nodes();
-        return answer(found, pairing);
+        return nearest.answer(pairing);
     }
     // Numbers that are not negative are in the order of their bits.
-    let shared = AtomicU64::new(limit.0.as_f64().to_bits());
+    let shared = AtomicU64::new(nearest.limit.0.as_f64().to_bits());
     let before = Pairing { work: Work::default(), ..pairing };
     let parts: alloc::vec::Vec<_> = boxes
         .deal(PARTS)
         .into_par_iter()
         .map(|part| {
-            let (mut pairing, mut found) = (before, Least { nearest: None, ..found });
-            let ask = |from, pair: AskedPair<'_, '_, '_, '_, S, T>| {
-                let of_all = up_to(ScalarOf::<S>::from_f64(f64::from_bits(shared.load(Ordering::Relaxed))));
-                if of_all < found.limit {
-                    found = Least { nearest: None, limit: of_all, ..found };
-                }
-                let limit = found.add(from, pair, options);
-                shared.fetch_min(limit.0.as_f64().to_bits(), Ordering::Relaxed);
-                ControlFlow::Continue(limit)
-            };
-            let _ = pairing.in_order(part, &mut Limited { limit, ask });
-            (found, pairing.work)
+            let mut pairing = before;
+            let mut question = OnThread { nearest: Nearest { pair: None, ..nearest }, shared: &shared };
+            let _ = pairing.in_order(part, &mut question);
+            (question.nearest, pairing.work)
         })
         .collect();
     for (part, work) in parts {
         pairing.count(work);
-        found.lower = Float::min(found.lower, part.lower);
-        if part.nearest.is_some() && part.limit < found.limit {
-            (found.nearest, found.limit) = (part.nearest, part.limit);
+        nearest.lower = Float::min(nearest.lower, part.lower);
+        if part.pair.is_some() && part.limit < nearest.limit {
+            (nearest.pair, nearest.limit) = (part.pair, part.limit);
         }
     }
-    answer(found, pairing)
+    nearest.answer(pairing)
 }
 
-/// Whether anything was within a distance so far.
-struct Any<I, N> {
-    within: N,
+/// The nearest pair that one thread finds, and the least distance that any has found.
+#[cfg(feature = "rayon")]
+struct OnThread<'s, V: Vector> {
+    nearest: Nearest<V>,
+    /// The bits of the distance.
+    shared: &'s AtomicU64,
+}
+
+#[cfg(feature = "rayon")]
+impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> TestPair<S, T> for OnThread<'_, S::Vector> {
+    fn limit(&self) -> ScalarOf<S> {
+        self.nearest.limit.0
+    }
+
+    fn is_late(&self, pair: [Id; 2], from: ScalarOf<S>) -> bool {
+        TestPair::<S, T>::is_late(&self.nearest, pair, from)
+    }
+
+    fn test(&mut self, pair: [Id; 2], from: ScalarOf<S>, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>) -> ControlFlow<()> {
+        let of_all = up_to(ScalarOf::<S>::from_f64(f64::from_bits(self.shared.load(Ordering::Relaxed))));
+        if of_all < self.nearest.limit {
+            self.nearest = Nearest { pair: None, limit: of_all, ..self.nearest };
+        }
+        self.nearest.test(pair, from, a, b)?;
+        self.shared.fetch_min(self.nearest.limit.0.as_f64().to_bits(), Ordering::Relaxed);
+        ControlFlow::Continue(())
+    }
+}
+
+/// Whether anything was within the limit of the options so far.
+struct Any<I, V: Vector> {
     any: bool,
     undecided: Option<I>,
+    options: DistanceOptions<V>,
 }
 
-impl<I: Ord + Copy, N: Scalar> Any<I, N> {
+impl<I: Ord + Copy, V: Vector> Any<I, V> {
+    fn none(within: V::Scalar, options: DistanceOptions<V>) -> Self {
+        Self { any: false, undecided: None, options: options.with_limit(within) }
+    }
+
     /// Breaks off at the first that certainly is within.
-    fn add<V: Vector<Scalar = N>>(&mut self, index: I, from: N, distance: &Distance<V>) -> ControlFlow<()> {
-        self.any |= distance.distance <= self.within;
-        if distance.upper <= self.within {
+    fn add(&mut self, index: I, from: V::Scalar, distance: &Distance<V>) -> ControlFlow<()> {
+        let within = self.options.limit;
+        self.any |= distance.distance <= within;
+        if distance.upper <= within {
             self.undecided = None;
             return ControlFlow::Break(());
         }
-        if Float::max(distance.lower, from) <= self.within {
+        if Float::max(distance.lower, from) <= within {
             self.undecided = Some(self.undecided.unwrap_or(index).min(index));
         }
         ControlFlow::Continue(())
+    }
+
+    fn answer(self, work: Work) -> SceneAnyWithin<I> {
+        SceneAnyWithin { any: self.any, undecided: self.undecided, work }
+    }
+}
+
+impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> TestPair<S, T> for Any<[usize; 2], S::Vector> {
+    fn limit(&self) -> ScalarOf<S> {
+        self.options.limit
+    }
+
+    fn is_late(&self, _: [Id; 2], _: ScalarOf<S>) -> bool {
+        false
+    }
+
+    fn test(&mut self, pair: [Id; 2], from: ScalarOf<S>, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>) -> ControlFlow<()> {
+        match asked_pair!(a, b => distance_of(a, b, self.options)) {
+            Some(distance) => self.add(pair.map(|id| id.body), from, &distance),
+            None => ControlFlow::Continue(()),
+        }
     }
 }
 
@@ -345,15 +347,9 @@ fn any<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
     within: ScalarOf<S>,
     options: DistanceOptions<S::Vector>,
 ) -> SceneAnyWithin<[usize; 2]> {
-    let (mut any, options) = (Any { within, any: false, undecided: None }, options.with_limit(within));
-    let ask = |from, (pair, a, b): AskedPair<'_, '_, '_, '_, S, T>| match asked_pair!(a, b => distance_of(a, b, options))
-    {
-        Some(distance) => any.add(pair.map(|id| id.body), from, &distance).map_continue(|()| up_to(within)),
-        None => ControlFlow::Continue(up_to(within)),
-    };
-    let mut question = Limited { limit: up_to(within), ask };
-    if pairing.half_spaces_in_order(&mut question).is_continue() {
-        let _ = pairing.in_order(boxes, &mut question);
+    let mut any = Any::none(within, options);
+    if pairing.half_spaces_in_order(&mut any).is_continue() {
+        let _ = pairing.in_order(boxes, &mut any);
     }
-    SceneAnyWithin { any: any.any, undecided: any.undecided, work: pairing.finish() }
+    any.answer(pairing.finish())
 }

@@ -10,7 +10,7 @@ use super::answers::{OfPair, PairDistance, Work, reuse};
 use super::asked::{Asked, asked_pair};
 use super::bounds::{HeightBound, Question};
 use super::instance::Id;
-use super::{Body, Scene, Slot};
+use super::{Body, Occupant, Scene};
 use crate::{Distance, DistanceOptions, distance};
 
 impl<S: SupportMap> Among<'_, S> {
@@ -185,7 +185,7 @@ impl<'s, S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'s, S, T> {
         if self.a.is_pair_left_out(i, j) {
             return ControlFlow::Continue(());
         }
-        if let (Slot::Body(a), Slot::Body(b)) = (a, b) {
+        if let (Occupant::Body(a), Occupant::Body(b)) = (a, b) {
             return self.test(pair, from, (Asked::Own(a), Asked::Own(b)), question);
         }
         let trees = [&self.a.scene.tree, &self.b.scene.tree];
@@ -199,6 +199,16 @@ impl<'s, S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'s, S, T> {
         let next = each_pair([i, j], (a, b), trees, (from, limit), &mut nodes, beside, &mut tell);
         self.work.nodes += nodes;
         next.map_continue(|_| ())
+    }
+
+    /// The half-spaces of either scene, which make pairs with the bounded bodies of the other one.
+    pub(super) fn half_spaces(&self) -> impl Iterator<Item = OfHalfSpace<'s, S::Vector>> + use<'s, S, T> {
+        let Self { a, b, same, .. } = *self;
+        let of = |others, is_second| {
+            move |(index, half_space)| OfHalfSpace { index, is_second, height: HeightBound::new(half_space), others }
+        };
+        let firsts = a.half_spaces().map(of(&b.scene.tree, false));
+        firsts.chain(b.half_spaces().filter(move |_| !same).map(of(&a.scene.tree, true)))
     }
 
     #[inline]
@@ -240,6 +250,22 @@ impl<'s, S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'s, S, T> {
         } else {
             a.members.saturating_mul(b.members) - a.half_spaces.len() * b.half_spaces.len()
         }
+    }
+}
+
+/// A half-space, and the boxes of the bodies that it makes pairs with.
+pub(super) struct OfHalfSpace<'s, V: Vector> {
+    pub(super) index: usize,
+    /// Whether it is the second of its pairs.
+    pub(super) is_second: bool,
+    pub(super) height: HeightBound<V>,
+    pub(super) others: &'s Bvh<V>,
+}
+
+impl<V: Vector> OfHalfSpace<'_, V> {
+    /// Its pair with another body.
+    pub(super) fn pair(&self, other: usize) -> [usize; 2] {
+        if self.is_second { [other, self.index] } else { [self.index, other] }
     }
 }
 
@@ -303,21 +329,10 @@ where
     /// Tests the bodies that are near half-spaces, sorts the pairs, and counts those that were left out.
     fn finish(self) -> Work {
         let Self { mut pairing, mut found } = self;
-        let (Pairing { a, b, same, .. }, within) = (pairing, found.within);
-        for (index, half_space) in a.half_spaces() {
-            let height = HeightBound::new(half_space);
-            let nodes = b
-                .scene
-                .tree
-                .within(&height, within, |other| pairing.ask([index, other], Scalar::ZERO, &|_| height, &mut found));
-            pairing.work.nodes += nodes;
-        }
-        for (index, half_space) in b.half_spaces().filter(|_| !same) {
-            let height = HeightBound::new(half_space);
-            let nodes = a
-                .scene
-                .tree
-                .within(&height, within, |other| pairing.ask([other, index], Scalar::ZERO, &|_| height, &mut found));
+        let within = found.within;
+        for of in pairing.half_spaces() {
+            let ask = |other| pairing.ask(of.pair(other), Scalar::ZERO, &|_| of.height, &mut found);
+            let nodes = of.others.within(&of.height, within, ask);
             pairing.work.nodes += nodes;
         }
         found.pairs.sort_unstable_by_key(OfPair::ids);
@@ -329,7 +344,7 @@ where
 /// at least that of the bodies. The call returns the limit from then on, or breaks off.
 fn each_pair<S: SupportMap, T: SupportMap<Vector = S::Vector>, Q: Question<S::Vector>>(
     [i, j]: [usize; 2],
-    (a, b): (&Slot<S>, &Slot<T>),
+    (a, b): (&Occupant<S>, &Occupant<T>),
     trees: [&Bvh<S::Vector>; 2],
     (from, mut limit): (ScalarOf<S>, ScalarOf<S>),
     nodes: &mut usize,

@@ -16,7 +16,7 @@ use crate::segments;
 use crate::{SignedDistance, Status};
 
 /// The rounding in double precision, in ε of the size: some 20 operations, each of half of that.
-const ROUNDED: f64 = 32.0;
+const ROUNDED_IN_DOUBLE: f64 = 32.0;
 
 /// How many errors the cores must be apart for bodies that may overlap. Their plane is then the best but for a part of
 /// the error as small as that, and nothing that a search finds would decide more.
@@ -63,7 +63,7 @@ compiled_once! {
         let along = raised(known.along(narrow(n)));
         let beyond = raised(known.beyond_length(V::Scalar::from_f64(length), along));
         let size = (core_a.extent + core_b.extent).as_f64() + radius + length + offset.length();
-        let rounded = size * (ROUNDED * f64::EPSILON);
+        let rounded = size * (ROUNDED_IN_DOUBLE * f64::EPSILON);
         let (below, above) = (along.as_f64() + rounded, beyond.as_f64() + rounded);
         let (lower, upper) = (level.min(length) - below - radius, length + above - radius);
         let clear = if lower > 0.0 { 2.0 } else { CLEAR };
