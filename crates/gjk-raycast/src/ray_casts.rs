@@ -100,11 +100,11 @@ impl<V: Vector> From<RayCast<V>> for RayEntry<V> {
 
 /// Casts many rays against one shape, and writes where each enters into a slice. Nothing is allocated.
 ///
-/// Each answer is that of [`ray_cast`] to the last bit, whatever its neighbours are: the same λ, bounds and normal.
-/// Balls, boxes, capsules and hulls with facets, also posed, are tested against several rays at a time. Rays that are
-/// then in doubt are cast alone. So are rays against other shapes, such as sums, each from anew:
-/// [`ray_casts`](crate::ray_casts) takes less time for these, as it starts each ray from the last. With the feature
-/// `simd`, the widest vector instructions of the processor are chosen at run time.
+/// Balls, boxes, capsules and hulls with facets, also posed, are tested against several rays at a time, and rays that
+/// are then in doubt are cast alone. Each answer is that of [`ray_cast`] to the last bit, whatever its neighbours are:
+/// the same λ, bounds and normal. For other shapes, such as sums, and for options that ask for a search, the answers
+/// are those of [`ray_casts`], which starts each ray from the last. With the feature `simd`, the widest vector
+/// instructions of the processor are chosen at run time.
 ///
 /// ```
 /// use convex_support::{Ball, glam::DVec3};
@@ -132,32 +132,42 @@ pub fn ray_entries_into<S: CrossedByLine + ?Sized>(
     entries: &mut [RayEntry<S::Vector>],
 ) -> Result<(), RayCastError> {
     assert_eq!(rays.len(), entries.len(), "there must be as many answers as rays");
+    let mut outcome = Ok(());
+    let mut write = |entry: &mut RayEntry<_>, cast: Result<RayCast<_>, RayCastError>| {
+        *entry = cast.map_or_else(
+            |error| {
+                outcome = outcome.and(Err(error));
+                let nan = <S::Vector as Vector>::Scalar::nan();
+                RayEntry { lambda: nan, lower: nan, upper: nan, normal: <S::Vector as Vector>::splat(nan) }
+            },
+            RayEntry::from,
+        );
+    };
     let mut by_lanes = is_plain(&options) && !options.max_lambda.is_nan();
     let mut lines = Lines::default();
-    let mut outcome = Ok(());
-    for (rays, entries) in rays.chunks(LINES).zip(entries.chunks_mut(LINES)) {
-        if by_lanes {
-            gather(rays, &mut lines);
-            by_lanes = target.certain_crossings(&mut lines);
-        }
-        if by_lanes {
+    for (piece, entries) in rays.chunks(RAYS_PER_PIECE).zip(entries.chunks_mut(RAYS_PER_PIECE)) {
+        for (rays, entries) in piece.chunks(LINES).zip(entries.chunks_mut(LINES)) {
+            if by_lanes {
+                gather(rays, &mut lines);
+                by_lanes = target.certain_crossings(&mut lines);
+            }
+            if !by_lanes {
+                break;
+            }
             scatter(&mut lines, options.max_lambda, entries);
             if !lines.any_in_doubt() {
                 continue;
             }
-        }
-        for (line, (&ray, entry)) in rays.iter().zip(entries).enumerate() {
-            if by_lanes && lines.known[line] != Scalar::ZERO {
-                continue;
+            for (line, (&ray, entry)) in rays.iter().zip(entries).enumerate() {
+                if lines.known[line] == Scalar::ZERO {
+                    write(entry, ray_cast(target, ray, options));
+                }
             }
-            *entry = ray_cast(target, ray, options).map_or_else(
-                |error| {
-                    outcome = outcome.and(Err(error));
-                    let nan = <S::Vector as Vector>::Scalar::nan();
-                    RayEntry { lambda: nan, lower: nan, upper: nan, normal: <S::Vector as Vector>::splat(nan) }
-                },
-                RayEntry::from,
-            );
+        }
+        if !by_lanes {
+            for (entry, cast) in entries.iter_mut().zip(ray_casts(target, piece, options)) {
+                write(entry, cast);
+            }
         }
     }
     outcome

@@ -1,8 +1,8 @@
-//! Many rays at one shape, side by side, are answered as each alone.
+//! Many rays at one shape, side by side, are answered as each alone; other shapes are asked as by `ray_casts`.
 
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::{Ball, Capsule, CrossedByLine, Cuboid, Posed, Rotation, Rounded, Scalar, Vector};
-use gjk_raycast::{Ray, RayCastError, RayCastOptions, RayEntry, ray_cast, ray_entries_into};
+use gjk_raycast::{Ray, RayCast, RayCastError, RayCastOptions, RayEntry, ray_cast, ray_casts, ray_entries_into};
 
 use crate::common::{Random, s, turned, v};
 
@@ -30,15 +30,34 @@ fn bits<V: Vector>(entry: RayEntry<V>) -> [u64; 6] {
     [entry.lambda, entry.lower, entry.upper, coordinate(0), coordinate(1), coordinate(2)].map(|x| x.as_f64().to_bits())
 }
 
-/// Compares all rays with the same alone; how many of them hit.
-fn hits<S: CrossedByLine + ?Sized>(target: &S, rays: &[Ray<S::Vector>], options: RayCastOptions<S::Vector>) -> usize {
+/// Compares all rays with those of single casts; how many of them hit.
+fn hits_beside<S: CrossedByLine + ?Sized>(
+    single: impl Iterator<Item = Result<RayCast<S::Vector>, RayCastError>>,
+    target: &S,
+    rays: &[Ray<S::Vector>],
+    options: RayCastOptions<S::Vector>,
+) -> usize {
     let mut entries = vec![RayEntry::default(); rays.len()];
     ray_entries_into(target, rays, options, &mut entries).expect("rays can be cast");
-    for (&ray, &entry) in rays.iter().zip(&entries) {
-        let alone = ray_cast(target, ray, options).expect("it can be cast").into();
-        assert_eq!(bits(entry), bits(alone), "{ray:?}: {entry:?} is not {alone:?}");
+    for ((ray, &entry), single) in rays.iter().zip(&entries).zip(single) {
+        let single = single.expect("it can be cast").into();
+        assert_eq!(bits(entry), bits(single), "{ray:?}: {entry:?} is not {single:?}");
     }
     entries.iter().filter(|entry| entry.lambda < Scalar::from_f64(f64::INFINITY)).count()
+}
+
+/// Of a shape that is asked side by side: each ray as alone.
+fn hits<S: CrossedByLine + ?Sized>(target: &S, rays: &[Ray<S::Vector>], options: RayCastOptions<S::Vector>) -> usize {
+    hits_beside(rays.iter().map(|&ray| ray_cast(target, ray, options)), target, rays, options)
+}
+
+/// Of any other: each ray after the last.
+fn hits_in_turn<S: CrossedByLine + ?Sized>(
+    target: &S,
+    rays: &[Ray<S::Vector>],
+    options: RayCastOptions<S::Vector>,
+) -> usize {
+    hits_beside(ray_casts(target, rays, options), target, rays, options)
 }
 
 fn all_shapes<V: Vector>(seed: u64, angle: f64) {
@@ -53,16 +72,13 @@ fn all_shapes<V: Vector>(seed: u64, angle: f64) {
         let place = [0.1 * size, -0.3 * size, 0.2 * size];
         let (rays, all) = (rays::<V>(&mut random, count, size), RayCastOptions::new());
         let ended = all.with_max_lambda(s::<V>(0.8));
-        let shapes: [&dyn CrossedByLine<Vector = V>; 8] = [
+        let shapes: [&dyn CrossedByLine<Vector = V>; 6] = [
             &ball,
             &cuboid,
             &capsule,
             &turned(ball, rotation, place),
             &turned(cuboid, rotation, place),
             &turned(turned(capsule, rotation, place), rotation, place),
-            // No lanes.
-            &Rounded::new(cuboid, s::<V>(0.1 * size)).expect("rounded"),
-            &Posed::translated(Rounded::new(cuboid, s::<V>(0.1 * size)).expect("rounded"), v(place)).expect("moved"),
         ];
         for shape in shapes {
             let of_all = hits(shape, &rays, all);
@@ -70,7 +86,11 @@ fn all_shapes<V: Vector>(seed: u64, angle: f64) {
             let of_ended = hits(shape, &rays, ended);
             assert!(of_ended <= of_all, "those that end hit no more");
         }
-        hits(&ball, &rays, all.with_min_lambda(s::<V>(0.5)));
+        let rounded = Rounded::new(cuboid, s::<V>(0.1 * size)).expect("rounded");
+        let many = rays.repeat(2);
+        assert!(hits_in_turn(&rounded, &many, all) > count / 8, "rays hit");
+        hits_in_turn(&Posed::translated(rounded, v(place)).expect("moved"), &many, ended);
+        hits_in_turn(&ball, &many, all.with_min_lambda(s::<V>(0.5)));
     }
 }
 
