@@ -6,9 +6,10 @@ use num_traits::Float as _;
 
 use super::frame::{CoarseUnit, Frame};
 use super::node::Boxes;
+use super::outer_box::outer_core_box;
 use crate::glam::{Vec3A, Vec4};
 use crate::numerics::range::{is_comfortable, power_of_two_below};
-use crate::{Aabb, Scalar, Vector};
+use crate::{Aabb, Scalar, SupportMap, Vector};
 
 /// A question to a tree of boxes: a lower bound on a quantity, such as a distance, for everything that lies in a box.
 ///
@@ -190,12 +191,14 @@ impl<V: Vector> CoarseBound for CoarseSweptBox<V> {
     }
 }
 
-/// A lower bound of the distance between two boxes.
+/// A lower bound of the distance between two boxes, of which one may be swept by a ball.
 ///
-/// In each coordinate the gap is how far one begins after the other ends, or 0; the distance is the length of the gaps.
+/// In each coordinate the gap is how far one begins after the other ends, or 0; the distance is the length of the gaps,
+/// less the radius of the ball.
 #[derive(Clone, Copy, Debug)]
 pub struct BoxDistance<V: Vector> {
     of: Aabb<V>,
+    radius: V::Scalar,
 }
 
 impl<V: Vector> BoxDistance<V> {
@@ -203,13 +206,34 @@ impl<V: Vector> BoxDistance<V> {
     #[inline]
     #[must_use]
     pub fn new(of: Aabb<V>) -> Self {
-        Self { of }
+        Self::rounded(of, V::Scalar::ZERO)
+    }
+
+    /// The distance from this box swept by a ball of the `radius`, which is neither negative nor NaN.
+    #[inline]
+    #[must_use]
+    pub fn rounded(of: Aabb<V>, radius: V::Scalar) -> Self {
+        Self { of, radius }
+    }
+
+    /// The distance from the box of a shape's [core](crate::Core), swept by its ball, with the room for rounding that
+    /// [`outer_box`](super::outer_box) has. `None` if a number is not finite.
+    #[inline]
+    #[must_use]
+    pub fn of_shape<S: SupportMap<Vector = V> + ?Sized>(shape: &S) -> Option<Self> {
+        outer_core_box(shape).map(|(of, radius)| Self::rounded(of, radius))
     }
 
     /// The box that distances are from.
     #[must_use]
     pub fn of(&self) -> Aabb<V> {
         self.of
+    }
+
+    /// The radius of the ball that sweeps the box.
+    #[must_use]
+    pub fn radius(&self) -> V::Scalar {
+        self.radius
     }
 }
 
@@ -224,20 +248,25 @@ impl<V: Vector> Bound<V> for BoxDistance<V> {
         let squared = gaps.length_squared();
         let is_plain = is_comfortable(squared) | (gaps.max_element() == V::Scalar::ZERO);
         let length = if is_plain { squared.sqrt() } else { gaps.norm() };
-        (length * (V::Scalar::ONE - rounding::<V::Scalar>())).min(V::Scalar::max_value())
+        let least = length * (V::Scalar::ONE - rounding::<V::Scalar>()) - self.radius;
+        least.max(V::Scalar::ZERO).min(V::Scalar::max_value())
     }
 
     #[inline]
     fn coarse(&self, frame: &Frame<V>) -> CoarseBoxDistance<V> {
-        CoarseBoxDistance::seen(&frame.outwards(&self.of), frame.unit())
+        let radius = self.radius.as_f64();
+        CoarseBoxDistance { radius, ..CoarseBoxDistance::seen(&frame.outwards(&self.of), frame.unit()) }
     }
 }
 
-/// A [`BoxDistance`] in the frame of a tree: the bounds are the squares of distances, and all rounding is in the limit.
+/// A [`BoxDistance`] in the frame of a tree: the bounds are the squares of distances, and the radius of the ball and all
+/// rounding are in the limit.
 #[derive(Clone, Copy, Debug)]
 pub struct CoarseBoxDistance<V> {
     /// For each coordinate, the smallest and the largest.
     of: [[Vec4; 2]; 3],
+    /// In the question's unit.
+    radius: f64,
     unit: CoarseUnit,
     space: PhantomData<V>,
 }
@@ -247,7 +276,7 @@ impl<V> CoarseBoxDistance<V> {
     #[inline(always)]
     pub(super) fn seen(of: &Aabb<Vec3A>, unit: CoarseUnit) -> Self {
         let of = core::array::from_fn(|i| [of.min[i], of.max[i]].map(Vec4::splat));
-        Self { of, unit, space: PhantomData }
+        Self { of, radius: 0.0, unit, space: PhantomData }
     }
 }
 
@@ -264,6 +293,6 @@ impl<V: Vector> CoarseBound for CoarseBoxDistance<V> {
 
     #[inline]
     fn limit(&self, limit: f64) -> f32 {
-        self.unit.limit_of_squares(limit)
+        self.unit.limit_of_squares(limit + self.radius)
     }
 }

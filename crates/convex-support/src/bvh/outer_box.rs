@@ -15,15 +15,43 @@ use crate::{Aabb, Core, CoreKind, Scalar, ScalarOf, SupportMap, Vector};
 #[inline]
 #[must_use]
 pub fn outer_box<S: SupportMap + ?Sized>(shape: &S) -> Option<Aabb<S::Vector>> {
-    let Core { origin, radius, extent, error, kind, .. } = shape.core();
-    let core = match kind {
-        CoreKind::Point(at) => Aabb { min: at, max: at },
-        _ => core_box(shape),
-    };
-    let size = origin.abs().dot(S::Vector::ONE) + extent + radius;
-    let room =
-        ScalarOf::<S>::from_f64(32.0) * ScalarOf::<S>::EPSILON * size + ScalarOf::<S>::min_positive_value() + error;
-    let reach = S::Vector::splat(radius + room);
+    let CoreWithRoom { core, origin, radius, room } = CoreWithRoom::of(shape);
+    grown(core, origin, radius + room)
+}
+
+/// The same of the core alone, and the radius of the ball that sweeps it. Of a round shape the two are closer than a
+/// box around both.
+#[inline]
+pub(super) fn outer_core_box<S: SupportMap + ?Sized>(shape: &S) -> Option<(Aabb<S::Vector>, ScalarOf<S>)> {
+    let CoreWithRoom { core, origin, radius, room } = CoreWithRoom::of(shape);
+    grown(core, origin, room).filter(|_| radius.is_finite()).map(|around| (around, radius))
+}
+
+struct CoreWithRoom<V: Vector> {
+    /// Relative to the origin.
+    core: Aabb<V>,
+    origin: V,
+    radius: V::Scalar,
+    room: V::Scalar,
+}
+
+impl<V: Vector> CoreWithRoom<V> {
+    #[inline]
+    fn of<S: SupportMap<Vector = V> + ?Sized>(shape: &S) -> Self {
+        let Core { origin, radius, extent, error, kind, .. } = shape.core();
+        let core = match kind {
+            CoreKind::Point(at) => Aabb { min: at, max: at },
+            _ => core_box(shape),
+        };
+        let size = origin.abs().dot(V::ONE) + extent + radius;
+        let room = V::Scalar::from_f64(32.0) * V::Scalar::EPSILON * size + V::Scalar::min_positive_value() + error;
+        Self { core, origin, radius, room }
+    }
+}
+
+#[inline]
+fn grown<V: Vector>(core: Aabb<V>, origin: V, reach: V::Scalar) -> Option<Aabb<V>> {
+    let reach = V::splat(reach);
     let outer = Aabb { min: origin + core.min - reach, max: origin + core.max + reach };
     (outer.min.is_finite() && outer.max.is_finite()).then_some(outer)
 }

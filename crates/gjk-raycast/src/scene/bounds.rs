@@ -26,7 +26,8 @@ impl<V: Vector> Question<V> for BoxDistance<V> {
         let half = frame.half_extents(half) + V::splat(frame.room(center.abs() + half));
         let center = frame.point(center);
         let (min, max) = (center - half, center + half);
-        Self::new(if min.is_finite() && max.is_finite() { Aabb { min, max } } else { Aabb::everything() })
+        let is_finite = min.is_finite() && max.is_finite();
+        Self::rounded(if is_finite { Aabb { min, max } } else { Aabb::everything() }, self.radius())
     }
 }
 

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::convert::Infallible;
 use core::ops::ControlFlow;
 
-use convex_support::{Aabb, BoxDistance, Scalar, ScalarOf, SupportMap, outer_box};
+use convex_support::{Aabb, BoxDistance, Scalar, ScalarOf, SupportMap};
 use num_traits::Float;
 
 use super::among::Among;
@@ -169,7 +169,7 @@ impl<S: SupportMap> Among<'_, S> {
     }
 }
 
-/// How far boxes are from that of a shape; nowhere, of a shape of which a number is not finite.
+/// How far boxes are from that of a shape's core, swept by its ball; nowhere, of a shape of which a number is not finite.
 pub(super) fn distance_of<A: SupportMap + ?Sized>(shape: &A) -> BoxDistance<A::Vector> {
-    BoxDistance::new(outer_box(shape).unwrap_or_else(Aabb::everything))
+    BoxDistance::of_shape(shape).unwrap_or_else(|| BoxDistance::new(Aabb::everything()))
 }
