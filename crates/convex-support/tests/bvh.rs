@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
-use convex_support::{Aabb, Bound, BoxDistance, Bvh, Scalar, SweptBox, Vector};
+use convex_support::{Aabb, Ball, Bound, BoxDistance, Bvh, Posed, Scalar, SweptBox, Vector, outer_box};
 use num_traits::Float as _;
 
 /// Numbers that look random and are the same on every machine (xorshift).
@@ -196,7 +196,20 @@ fn all_kinds<V: Vector>(seed: u64) {
                     {
                         assert!(all.bound(around) <= one.bound(around), "{around:?} by {one:?} of {of:?}");
                     }
-                    found += check(&tree, &boxes, &BoxDistance::new(numbers.around(size, size * 0.1)), share);
+                    let box_distance = BoxDistance::new(numbers.around(size, size * 0.1));
+                    found += check(&tree, &boxes, &box_distance, share);
+                    let radius = V::Scalar::from_f64(size * 0.2 * numbers.signed().abs());
+                    let rounded = BoxDistance::rounded(box_distance.of(), radius);
+                    found += check(&tree, &boxes, &rounded, share);
+                    for around in boxes.iter().flatten() {
+                        let (least, most) = (rounded.bound(around), box_distance.bound(around));
+                        assert!(
+                            least <= most
+                                && (least > V::Scalar::ZERO
+                                    || most <= radius + radius * V::Scalar::EPSILON * V::Scalar::from_f64(16.0)),
+                            "{around:?}"
+                        );
+                    }
                 }
                 if round == 0 {
                     near += pairs(&tree, &boxes, V::Scalar::ZERO);
@@ -346,6 +359,15 @@ fn bounds_of_boxes_at_every_magnitude() {
         let overlapping = Aabb { min: -V::ONE, max: V::ONE };
         assert_eq!(BoxDistance::new(overlapping).bound(&at(V::ZERO)), V::Scalar::ZERO, "one in the other");
         assert_eq!(BoxDistance::new(overlapping).bound(&at(V::ONE)), V::Scalar::ZERO, "touching");
+        // A ball at a corner is farther from it than the box around the ball.
+        let (corner, radius) = (V::splat(V::Scalar::from_f64(5.0)), V::Scalar::from_f64(2.0));
+        let ball = Posed::translated(Ball::<V>::new(radius).expect("a radius"), corner).expect("a place");
+        let by_ball = BoxDistance::of_shape(&ball).expect("finite").bound(&overlapping);
+        let due = V::splat(V::Scalar::from_f64(4.0)).norm() - radius;
+        let slack = V::Scalar::from_f64(1.0 - 512.0 * V::Scalar::EPSILON.as_f64());
+        assert!(by_ball <= due && by_ball >= due * slack, "{by_ball:?} or {due:?}");
+        let by_box = BoxDistance::new(outer_box(&ball).expect("finite")).bound(&overlapping);
+        assert!(by_box < due * V::Scalar::from_f64(0.8), "{by_box:?}");
     }
     let double = [1e-300, 1e-160, 1e-8, 1.0, 1e8, 1e160, 1e300];
     check::<DVec3>(&double);
