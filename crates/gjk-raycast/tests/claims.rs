@@ -1,9 +1,11 @@
 //! What answers say of themselves is so, for shapes of every kind.
 
 use convex_support::strategies::{AnyShape, combined, pose, primitive, primitive_3d};
-use convex_support::{Ball, Posed, Scalar, Vector, glam};
-use gjk_raycast::Ray;
+use convex_support::{
+    Affine, Ball, Cone, Cuboid, Cylinder, Difference, Matrix, Posed, Scalar, Segment, SupportMap, Vector, glam,
+};
 use gjk_raycast::laws::{self, Law, PairPlanes};
+use gjk_raycast::{MotionCastOptions, Ray, RigidMotion};
 use proptest::prelude::*;
 
 type Shape<V> = Posed<AnyShape<V>>;
@@ -54,4 +56,93 @@ fn planes_refute_bounds_points_and_hits() {
     assert!(missed.broken.iter().any(|broken| broken.law == Law::Bound), "{missed}");
     let right = laws::pair(&ball, &beside, &[glam::DVec3::Y]);
     assert!(right.broken.is_empty() && right.examined > 50, "{right}");
+}
+
+/// A square on another one turns about a point near the middle of their contact, where its speed is far from that of its
+/// corner; and one beside another moves into it as it turns, where a lean search knows no plane at the start.
+#[test]
+fn motions_from_contact_are_converged_only_where_the_bracket_is_narrow() {
+    let square = |half: glam::DVec2| Cuboid::new(half).expect("half extents");
+    let (one, wide) = (square(glam::DVec2::ONE), square(glam::DVec2::new(3.0, 1.0)));
+    let on_top = Posed::translated(one, glam::DVec2::new(0.3, 2.0)).expect("finite");
+    let beside = Posed::translated(one, glam::DVec2::new(2.0, 0.5)).expect("finite");
+    let rest = RigidMotion::default();
+    let options = MotionCastOptions::default().with_max_time(2.0);
+    for beside_the_middle in [1e-2, 1e-5, 1e-8] {
+        let turn = RigidMotion::rotation(-1.0, glam::DVec2::new(0.225 - beside_the_middle, 1.0));
+        let report = laws::motion_cast(&on_top, turn, &wide, rest, options, &[]);
+        assert!(report.broken.is_empty(), "{beside_the_middle}: {report}");
+    }
+    let into = RigidMotion { velocity: glam::DVec2::X, angular_velocity: 1.0, center: glam::DVec2::ZERO };
+    let report = laws::motion_cast(&one, into, &beside, rest, options, &[]);
+    assert!(report.broken.is_empty(), "{report}");
+}
+
+/// Holds rays to the laws that reach a point after `back` times a direction.
+fn rays_to<V: Vector>(target: &dyn SupportMap<Vector = V>, at: V, direction: V) {
+    let number = V::Scalar::from_f64;
+    let starts = [V::axis(0), V::axis(1), V::from_fn(|i| number([0.5, -0.25, 0.125][i]))];
+    for back in 1..20 {
+        let ray = Ray { source: at - direction * number(f64::from(back) * 1.37), direction };
+        let report = laws::ray(target, ray, Default::default(), &starts);
+        assert!(report.broken.is_empty(), "{ray:?}: {report}");
+    }
+}
+
+/// At an edge the ray runs nearly along one of two faces. The plane of that face alone tells neither how far the ray is
+/// from the body at its lower bound, nor whether it is still in it at the upper one.
+#[test]
+fn rays_at_an_edge_beside_a_face_are_converged_only_where_both_bounds_are_near() {
+    fn of<V: Vector>(slopes: [f64; 3]) {
+        let vector = |v: [f64; 3]| V::from_fn(|i| V::Scalar::from_f64(v[i]));
+        let cuboid = Cuboid::new(vector([3.0, 2.0, 3.0])).expect("half extents");
+        for slope in slopes.into_iter().flat_map(|slope| [slope, -slope]) {
+            for off in [0.0, 1.0, -3.0, 8.0].map(|ulps| ulps * V::Scalar::EPSILON.as_f64()) {
+                rays_to(&cuboid, vector([-3.0 + off, -2.0, 0.1]), vector([slope, 1.0, 0.0]));
+            }
+        }
+    }
+    of::<glam::DVec3>([1e-3, 2e-6, 1e-10]);
+    of::<glam::Vec3A>([1e-2, 3e-5, 1e-6]);
+    of::<glam::DVec2>([1e-3, 2e-6, 1e-10]);
+    of::<glam::Vec2>([1e-2, 3e-5, 1e-6]);
+}
+
+/// A ray that runs through a sharp corner, and out again, within rounding.
+#[test]
+fn rays_through_a_corner_are_converged_only_where_they_have_not_left() {
+    type V = glam::Vec2;
+    let segment = Segment::new([V::new(0.749_297, -0.305_620_96), V::new(-0.088_882_95, 0.354_381_77)]);
+    let matrix = <V as Vector>::Matrix::from_cols_fn(|j| {
+        [V::new(0.689_044, -0.775_327_4), V::new(-0.750_431_7, 0.842_550_26)][j]
+    });
+    let bar = Posed::new(segment.expect("finite"), -1.812_407_4, V::new(0.632_149_1, 0.343_251_23)).expect("finite");
+    let bar = Affine::new(bar, matrix, V::new(-0.385_123_38, 0.999_254_1)).expect("finite");
+    let plate = Cuboid::new(V::new(0.001_917_535_8, 0.985_329_45)).expect("half extents");
+    let target = Difference::new(plate, bar);
+    rays_to(&target, V::new(-0.045_399_427, 0.468_989_6), V::new(26.279_907, -0.156_605_28));
+}
+
+/// A miss has all of a ray that ends before an edge on one side of its plane, which so faces the ray.
+#[test]
+fn rays_that_end_before_an_edge_miss_by_a_plane_that_faces_them() {
+    fn of<V: Vector>(target: &dyn SupportMap<Vector = V>, at: [f64; 3], across: usize) {
+        for slope in [1.0, 0.1, 1e-3, -1e-3, 1e-6] {
+            let mut direction = [0.0; 3];
+            (direction[1], direction[across]) = (at[1].signum() * slope, -at[across].signum());
+            rays_to(
+                target,
+                V::from_fn(|i| V::Scalar::from_f64(at[i])),
+                V::from_fn(|i| V::Scalar::from_f64(direction[i])),
+            );
+        }
+    }
+    let [r, h] = [0.512_463_420_526_764_3, 0.531_997_361_682_791_7];
+    for at in [[0.0, -h, r], [0.6 * r, -h, -0.8 * r]] {
+        of(&Cone::<glam::DVec3>::new(h, r).expect("a cone"), at, 2);
+        of(&Cylinder::<glam::DVec3>::new(h, r).expect("a cylinder"), at, 2);
+        of(&Cylinder::<glam::DVec3>::new(h, r).expect("a cylinder"), at.map(|x| -x), 2);
+    }
+    of(&Cuboid::new(glam::DVec2::new(r, h)).expect("a cuboid"), [r, -h, 0.0], 0);
+    of(&Cuboid::new(glam::DVec3::new(r, h, 1.0)).expect("a cuboid"), [-r, h, 0.1], 0);
 }

@@ -235,9 +235,11 @@ impl CloseLine {
     /// A cylinder about the second axis, not swept by a ball.
     pub(crate) fn cylinder<S: Scalar>(&self, half_height: S, radius: S) -> Close {
         let [half_height, radius] = [half_height, radius].map(|length| self.in_units(length));
+        let [_, direction] = self.plain();
         let outward = |at: DVec3| {
-            let is_beyond_lid = at.y.abs() - half_height > across(at).length() - radius;
-            across(at).try_normalize().filter(|_| !is_beyond_lid).unwrap_or(DVec3::Y.copysign(at))
+            let lid = DVec3::Y.copysign(-direction);
+            let side = across(at).try_normalize().unwrap_or(lid);
+            self.entered([(across(at).length() - radius, side), (at.dot(lid) - half_height, lid)])
         };
         let crossed = |source, direction| super::cylinder(half_height, radius, source, direction);
         let entry = |line: &Self, by: f64| {
@@ -248,6 +250,15 @@ impl CloseLine {
         };
         self.is_not_swept()?;
         self.known(entry, outward, crossed, |axis| half_height * axis.y.abs() + radius * across(axis).length())
+    }
+
+    /// The normal of the surface that the line enters, of two that meet at an edge: the one that its point is farther
+    /// beyond, but where that is an error, one that the line does not leave.
+    fn entered(&self, surfaces: [(f64, DVec3); 2]) -> DVec3 {
+        let [_, direction] = self.plain();
+        let error = self.error * 2.0 + 32.0 * f64::EPSILON;
+        let [first, second] = surfaces.map(|(beyond, n)| if n.dot(direction) > 0.0 { beyond - error } else { beyond });
+        surfaces[usize::from(second > first)].1
     }
 
     /// `None` if the shape is swept by a ball.
@@ -265,7 +276,7 @@ impl CloseLine {
         let outward = |at: DVec3| {
             let beyond_slant = across(at).length() * cosine - (half_height - at.y) * sine;
             let out = across(at).try_normalize().unwrap_or_else(|| across(-direction).normalize_or_zero());
-            if -half_height - at.y > beyond_slant { DVec3::NEG_Y } else { out * cosine + DVec3::Y * sine }
+            self.entered([(beyond_slant, out * cosine + DVec3::Y * sine), (-half_height - at.y, DVec3::NEG_Y)])
         };
         let crossed = |source, direction| super::cone(&shape, source, direction);
         self.is_not_swept()?;
@@ -306,9 +317,12 @@ impl CloseLine {
         let is_swept = self.is_not_swept().is_none();
         // In the plane a prism of any height has the same edges.
         let prism = DVec3::from_array(core::array::from_fn(|i| if axes(i) { half[i] } else { 1.0 }));
+        let [_, direction] = self.plain();
         let outward = |at: DVec3| {
-            let beyond = at.abs() - prism;
-            let face = axis_of(beyond, beyond.max_element()) * DVec3::ONE.copysign(at);
+            // The line enters the sides that it goes against, also where its point is beyond others by an error.
+            let side = DVec3::ONE.copysign(DVec3::select(direction.cmpeq(DVec3::ZERO), at, -direction));
+            let beyond = at * side - prism;
+            let face = axis_of(beyond, beyond.max_element()) * side;
             let excess = if is_swept { at - at.max(-prism).min(prism) } else { face };
             excess.try_normalize().unwrap_or(face)
         };

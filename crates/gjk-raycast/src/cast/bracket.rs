@@ -33,8 +33,8 @@ pub(super) const NOISE: f64 = 8.0;
 /// The greatest depth at the upper bound of a converged answer, in errors.
 pub(super) const NARROW: f64 = 40.0;
 
-/// The same, in roundings of the way there.
-const NARROW_OF_WAY: f64 = 512.0;
+/// The same, in roundings of the way there. A ray that is cast back comes from sizes away, wherever its source is.
+const NARROW_OF_WAY: f64 = 32.0;
 
 /// The least depth, in errors, of a ray in a ball that rolls within the body, for its slope to prove where it is in
 /// the body.
@@ -270,6 +270,18 @@ impl<'a, V: Vector> Bracket<'a, V> {
         self.error * number(NARROW) + way * V::Scalar::EPSILON * number(NARROW_OF_WAY) + self.tolerance()
     }
 
+    /// Where the bounds are on the line, wider by what rounding moved them.
+    pub(super) fn ends(&self) -> [V::Scalar; 2] {
+        let earliest = self.low() - self.certain(self.low.bound);
+        [earliest.max(self.ray.start), self.high.at + self.delay()]
+    }
+
+    /// Remembers how deep the body is entered at the upper bound by the last plane, before another one is.
+    pub(super) fn keep_depth(&mut self) {
+        let depth = (self.ends()[1] - self.low()) * self.slope_or_one();
+        self.depth = if depth < self.depth { depth } else { self.depth };
+    }
+
     /// Whether a converged answer may have this upper bound. The ray is no deeper in the body than behind a plane that
     /// supports it.
     pub(super) fn is_narrow(&self, upper: V::Scalar) -> bool {
@@ -406,6 +418,11 @@ impl<'a, V: Vector> Bracket<'a, V> {
         // The rest of the ray may begin earlier, where it is less far before a plane that it leaves.
         let at_earliest = ahead - slope.max(zero) * self.certain(self.low.bound);
         if at_earliest > self.error { Err(Stop::Miss(n)) } else { Ok(None) }
+    }
+
+    /// The contact where the last plane is crossed, of which a point of the body is known otherwise.
+    pub(super) fn at_low(&self, witness: PointPair<V>) -> RayContact<V> {
+        RayContact { mu: self.low(), normal: self.normal, witness }
     }
 
     /// The contact where the last plane is crossed, if a point made of `witness`, about which a ball of the radius is

@@ -20,7 +20,7 @@ use crate::observer::Observer;
 use crate::options::{MayBeLean, Rare};
 use crate::simplex::Simplex;
 use crate::{CastMethod, Miss, Outcome, RayCastOptions, Status};
-use algorithm_3::{algorithm_3, touch_beside};
+use algorithm_3::{algorithm_3, draw_near, touch_beside};
 use bracket::Bracket;
 use certain::at_certain_entry;
 pub(crate) use certain::{certain, certain_closely, is_plain, last_number, show};
@@ -104,16 +104,24 @@ fn cast_by<V: Vector, const ALL: bool>(
     observer: &mut Observer<'_, V>,
 ) -> ObstacleCast<V> {
     let mut bracket = Bracket::new(body, ray, options, observer);
-    let found = match bracket.enter_ball() {
+    let mut found = match bracket.enter_ball() {
         Ok(()) if bracket.error < V::Scalar::infinity() => search::<V, ALL>(&mut bracket),
         // Nothing is known about numbers out of range.
         Ok(()) => Err(Stop::Exhausted(Status::Stalled)),
         Err(stop) => Err(stop),
     };
-    if found.is_ok() && bracket.is_entry_open() && bracket.is_past_start() {
-        bound_entry(&mut bracket);
+    let mut is_near = true;
+    if let Ok(contact) = &mut found {
+        let (on, _) = bracket.point_near_line();
+        if bracket.is_entry_open() && bracket.is_past_start() {
+            bound_entry(&mut bracket);
+        }
+        let [low, high] = bracket.ends();
+        if high - low > bracket.narrow() && !bracket.is_entry_open() && bracket.is_narrow(high) {
+            is_near = draw_near(&mut bracket, contact, on);
+        }
     }
-    conclude(&bracket, found)
+    conclude(&bracket, found, is_near)
 }
 
 /// First the certain crossing of the shape, then the quicker search, and Algorithm 3 if both are in doubt.
@@ -186,7 +194,11 @@ pub(crate) struct CastHit<V: Vector> {
 }
 
 #[inline(always)]
-fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, Stop<V>>) -> ObstacleCast<V> {
+fn conclude<V: Vector>(
+    bracket: &Bracket<'_, V>,
+    found: Result<RayContact<V>, Stop<V>>,
+    is_near: bool,
+) -> ObstacleCast<V> {
     let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
     let (ray, max_lambda) = (bracket.ray, bracket.options.max_lambda);
     let (outcome, (lower, upper), status) = match found {
@@ -199,7 +211,8 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
                 (Outcome::Miss(Miss { axis }), (infinity, infinity), Status::Converged)
             } else {
                 let hit = CastHit { lambda, normal, spot: ray.line.at(mu), witness };
-                let status = if bracket.is_narrow(ray.mu(upper)) { Status::Converged } else { Status::Stalled };
+                let is_narrow = is_near && bracket.is_narrow(ray.mu(upper));
+                let status = if is_narrow { Status::Converged } else { Status::Stalled };
                 (Outcome::Hit(hit), (lower, upper), status)
             }
         }

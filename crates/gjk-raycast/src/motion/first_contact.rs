@@ -476,6 +476,10 @@ impl<'p, V: Vector> Search<'p, V> {
 
     /// Whether the bodies move against one another, within the bracket, by no more than a converged answer may leave
     /// open: by their speed, or else by the plane of the last time at which they are apart.
+    ///
+    /// Where that plane does not keep the bodies apart, the speed of their closest points tells nothing of other points,
+    /// and the error of their distance is that of a search that may have ended early. Then two levels of the plane tell
+    /// how deep they are, and the error is that of a level. In between, the level is a part of the acceleration lower.
     fn is_narrow(&self) -> bool {
         let (number, Instant { time, normal, gap, error, closing, .. }) = (V::Scalar::from_f64, self.near);
         let (zero, from, size) = (V::Scalar::ZERO, self.lower().min(time), self.bodies.size());
@@ -483,19 +487,23 @@ impl<'p, V: Vector> Search<'p, V> {
         if width <= zero {
             return true;
         }
-        let narrow = (size * V::Scalar::EPSILON * number(NARROW_AT_END)).max(error * number(NARROW_OF_ERROR))
-            + size * self.options.tolerance;
+        let narrow = |error: V::Scalar| {
+            (size * V::Scalar::EPSILON * number(NARROW_AT_END)).max(error * number(NARROW_OF_ERROR))
+                + size * self.options.tolerance
+        };
         if from < time {
             // The last plane is of a later time than the first one of the bracket.
-            return width * self.bodies.speed_at(&self.near) <= narrow;
+            return width * self.bodies.speed_at(&self.near) <= narrow(error);
         }
         let most = self.bodies.acceleration_along(TurningPlane { from: normal, to: normal }, [time, self.upper]);
-        if width * (closing.abs() + most * width * number(0.5)) - gap.min(zero) <= narrow {
+        if gap > zero && width * (closing.abs() + most * width * number(0.5)) <= narrow(error) {
             return true;
         }
         let before = if self.base.stage == Stage::Apart { zero } else { self.bodies.level(time, normal).0 };
+        let (level, rounded) = self.bodies.level(self.upper, normal);
+        let lower = if gap > zero { zero } else { most * width * width * number(0.125) };
         // NaN is not narrow.
-        (before - self.bodies.level(self.upper, normal).0).abs() <= narrow
+        (before - level).abs() + lower <= narrow(if gap > zero { error } else { rounded })
     }
 
     pub(super) fn answer(&self, end: MotionEnd<V>) -> MotionCast<V> {

@@ -10,6 +10,7 @@
 //!   the ray, with the whole line for `x`.
 //! - A radius is never made of support points: the simplex is swept by it.
 
+mod nearness;
 mod refine;
 mod swept_simplex;
 
@@ -19,6 +20,7 @@ use super::bracket::Bracket;
 use super::{RayContact, Stop};
 use crate::gjk::Progress;
 use crate::simplex::{Closest, MAX_POINTS, Simplex, is_around_zero, project_rarely};
+pub(super) use nearness::draw_near;
 use refine::refine;
 use swept_simplex::entry;
 
