@@ -5,9 +5,10 @@ use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once, compiled_t
 use num_traits::Float as _;
 
 use crate::body::{Both, Shapes};
+use crate::gjk::{End, Gjk, GjkOptions, first_direction};
 use crate::observer::Observer;
 use crate::options::{MAX_ITERATIONS, MayBeLean, Rare, options};
-use crate::separation::{Cores, OfOverlap, RareInDistances, Wanted, direct, separation};
+use crate::separation::{Cores, OfOverlap, RareInDistances, Search, Wanted, direct, separation};
 use crate::shape::Shape;
 use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, SubAlgorithm};
 
@@ -191,23 +192,60 @@ compiled_once! {
         options: DistanceOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> Distance<V> {
-        let DistanceOptions { tolerance, limit, max_iterations, axis, sub_algorithm, rare } = options;
-        let axis = axis.map(|axis| if is_swapped { -axis } else { axis });
+        let axis = options.axis.map(|axis| if is_swapped { -axis } else { axis });
         // No distance is negative. NaN is no limit.
-        let limit = if limit < Scalar::ZERO { Scalar::ZERO } else { limit };
-        // How deep bodies are that certainly overlap is not asked.
-        let depth_limit = Scalar::ZERO;
-        let of_separation = SignedDistanceOptions { limit, depth_limit, max_iterations, axis, ..Default::default() };
-        let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation, rare.0) };
-        let mut cores = Cores::new(shapes, cores);
-        let found = observer.of_swapped(is_swapped, |observer| separation::<_, false>(&mut cores, &wanted, observer));
-        let mut answer = found.distance(&cores, &wanted);
+        let limit = if options.limit < Scalar::ZERO { Scalar::ZERO } else { options.limit };
+        let options = DistanceOptions { axis, limit, ..options };
+        let mut answer = observer.of_swapped(is_swapped, |observer| searched(shapes, cores, &options, observer));
         // In place: a copy would wait until the answer is in the cache.
         if is_swapped {
             answer = answer.reversed();
         }
         answer
     }
+}
+
+/// The distance of bodies in order, with options that are theirs.
+#[inline(always)]
+fn searched<V: Vector>(
+    shapes: &dyn Shapes<Vector = V>,
+    cores: [&Core<V>; 2],
+    options: &DistanceOptions<V>,
+    observer: &mut Observer<'_, V>,
+) -> Distance<V> {
+    let &DistanceOptions { tolerance, limit, max_iterations, axis, sub_algorithm, .. } = options;
+    let mut search = Search::new(shapes, cores);
+    let mut state = Gjk::new(first_direction(axis, search.frame.offset));
+    let gjk_options = GjkOptions { limit, tolerance, sub_algorithm, ..GjkOptions::new(state.normal, max_iterations) };
+    let end = search.run(&mut state, gjk_options, observer);
+    if end == Some(End::Separated)
+        && let Some(known) = search.apart(&state)
+    {
+        let SignedDistance { signed_distance: distance, lower, upper, normal, point_a, point_b, .. } = known;
+        let (overlap, normal, status, iterations) = (false, Some(normal), known.status, known.iterations);
+        let allowed = search.frame.widest() + tolerance.max(Scalar::ZERO) * lower;
+        if upper - lower <= allowed || lower > limit {
+            return Distance { distance, lower, upper, overlap, point_a, point_b, normal, status, iterations };
+        }
+    }
+    searched_closely(search, end.map(|end| (&mut state, end)), options, observer)
+}
+
+/// The distance of bodies that are not plainly apart, after a first search for it.
+#[cold]
+#[inline(never)]
+fn searched_closely<V: Vector>(
+    search: Search<'_, V>,
+    found: Option<(&mut Gjk<V>, End)>,
+    &DistanceOptions { tolerance, limit, max_iterations, axis, sub_algorithm, rare }: &DistanceOptions<V>,
+    observer: &mut Observer<'_, V>,
+) -> Distance<V> {
+    // How deep bodies are that certainly overlap is not asked.
+    let depth_limit = Scalar::ZERO;
+    let of_separation = SignedDistanceOptions { limit, depth_limit, max_iterations, axis, ..Default::default() };
+    let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation, rare.0) };
+    let mut cores = Cores::new(search);
+    separation::<_, false>(&mut cores, &wanted, found, observer).distance(&cores, &wanted)
 }
 
 /// Calls `ask` with the distance of `a[k]` and `b[k]`, and writes what it returns into `answers[k]`, for each k.

@@ -5,7 +5,7 @@ use num_traits::Float as _;
 
 use crate::body::{Both, Shapes};
 use crate::observer::Observer;
-use crate::separation::{Cores, OfOverlap, RareInDistances, Separation, Wanted, direct, separation};
+use crate::separation::{Cores, OfOverlap, RareInDistances, Search, Separation, Wanted, direct, separation};
 use crate::shape::Shape;
 use crate::{Iterate, SignedDistance, SignedDistanceOptions, Status};
 
@@ -92,8 +92,8 @@ compiled_once! {
         let axis = options.axis.map(|axis| if is_swapped { -axis } else { axis });
         let options = SignedDistanceOptions { axis, ..options };
         let wanted = Wanted::new(OfOverlap::Depth, options, Some(&RareInDistances::WITH_DEPTH));
-        let mut cores = Cores::new(shapes, cores);
-        let found = observer.of_swapped(is_swapped, |observer| separation::<_, true>(&mut cores, &wanted, observer));
+        let mut cores = Cores::new(Search::new(shapes, cores));
+        let found = observer.of_swapped(is_swapped, |observer| separation::<_, true>(&mut cores, &wanted, None, observer));
         let mut answer = found.signed_distance(&cores, &wanted);
         // In place: a copy would wait until the answer is in the cache.
         if is_swapped {
@@ -148,9 +148,9 @@ pub(crate) fn rough_signed_distance<V: Vector>(
 ) -> SignedDistance<V> {
     let parts = shapes.cores();
     direct(shapes, parts, options.max_iterations, &mut Observer::none(), |_, _| None).unwrap_or_else(|| {
-        let mut cores = Cores::new(shapes, parts.each_ref());
+        let mut cores = Cores::new(Search::new(shapes, parts.each_ref()));
         let wanted = Wanted::new(OfOverlap::RoughDepth, options, rare);
-        separation::<_, true>(&mut cores, &wanted, &mut Observer::none()).signed_distance(&cores, &wanted)
+        separation::<_, true>(&mut cores, &wanted, None, &mut Observer::none()).signed_distance(&cores, &wanted)
     })
 }
 

@@ -1,12 +1,13 @@
 //! The difference of two cores: its support points, their errors, and the result of GJK on it.
 
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Core, Scalar, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::Wanted;
-use super::near::{NearContact, SUM, Uncertainty};
-use crate::body::{AnyPair, Pair, PointPair, Shapes, TracedSupport as _};
+use super::apart::{Search, error_of_points};
+use super::near::{NearContact, Uncertainty};
+use crate::body::{AnyPair, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, first_direction, gjk};
 use crate::observer::Observer;
 use crate::unit::lost_to_underflow;
@@ -44,12 +45,8 @@ pub(crate) struct Cores<'a, V: Vector> {
 
 impl<'a, V: Vector> Cores<'a, V> {
     #[inline(always)]
-    pub(crate) fn new(shapes: &'a (dyn Shapes<Vector = V> + 'a), cores: [&'a Core<V>; 2]) -> Self {
-        let mut pair = Pair::new(shapes, cores);
-        let offset = pair.core_a.origin - pair.core_b.origin;
-        let size = pair.size(offset);
+    pub(crate) fn new(Search { pair, frame, size }: Search<'a, V>) -> Self {
         let radii = [pair.core_a.radius, pair.core_b.radius];
-        let frame = Frame::new(&mut pair, offset, size);
         let error = error_of_points(&pair, size) * frame.per_unit + lost_to_underflow(frame.scale);
         let (zero, lost_in_offset, size) = (Scalar::ZERO, V::ZERO, size * frame.per_unit);
         Self {
@@ -172,13 +169,6 @@ impl<'a, V: Vector> Cores<'a, V> {
         p.norm() + self.uncertainty.as_ref().map_or(self.error, |known| known.beyond(p)) + self.peeled_error
     }
 
-    /// How wide the bracket on a distance may be at most that rounding alone has left, in the world's unit: the bounds
-    /// that end a search differ by the noise, and each is wrong by no more than the error.
-    #[inline(always)]
-    pub(super) fn widest(&self) -> V::Scalar {
-        self.frame.error * self.frame.scale * Scalar::from_f64(3.0)
-    }
-
     /// What GJK moves points by as it compares them.
     pub(super) fn noise(&self) -> V::Scalar {
         self.frame.noise
@@ -237,15 +227,4 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.iterations += state.iterations;
         end
     }
-}
-
-/// A bound on the error of points of the difference of two cores of the given size, as a length, in the world's unit:
-/// no less than any [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths,
-/// and the offset of the origins loses half an ε of its own.
-#[inline(always)]
-pub(crate) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
-    pair: &Pair<'_, T>,
-    size: V::Scalar,
-) -> V::Scalar {
-    pair.error() + (size - pair.radius()) * (V::Scalar::EPSILON * Scalar::from_f64(SUM))
 }

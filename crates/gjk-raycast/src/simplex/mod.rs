@@ -131,6 +131,11 @@ impl<V: Vector> Simplex<V> {
         &self.witnesses[..self.len]
     }
 
+    /// The points with their weights and the points that they come from.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = (V, V::Scalar, PointPair<V>)> + '_ {
+        (0..self.len.min(MAX_POINTS)).map(|i| (self.points[i], self.weights[i], self.witnesses[i]))
+    }
+
     pub(crate) fn weighted(&self) -> impl Iterator<Item = (V::Scalar, PointPair<V>)> + '_ {
         (0..self.len).map(|i| (self.weights[i], self.witnesses[i]))
     }
