@@ -83,7 +83,7 @@ pub(crate) fn direct<T: Shapes + ?Sized>(
 
 /// Two bodies before a search: the difference of their cores, and the unit of its lengths.
 pub(crate) struct Search<'a, V: Vector> {
-    pub(super) pair: AnyPair<'a, V>,
+    pub(crate) pair: AnyPair<'a, V>,
     pub(crate) frame: Frame<V>,
     /// The sizes of both cores, their radii and their offset, in the world's unit.
     pub(super) size: V::Scalar,
@@ -99,13 +99,14 @@ impl<'a, V: Vector> Search<'a, V> {
         Self { pair, frame, size }
     }
 
-    /// GJK along an axis, or else the offset of the bodies, until the distance of the cores is known as well as the
-    /// options ask for: their limit is that of the bodies. `None` if the closest points are known in closed form:
-    /// those that [`direct`] has left open are no plain case.
+    /// GJK from a first direction, until the distance of the cores is known as well as the options ask for, or is
+    /// certainly beyond their limit, which is that of the bodies, or no more than `touching`. `None` if the closest
+    /// points are known in closed form: where [`direct`] has not answered by those, the bodies are not plainly apart.
     #[inline(always)]
     pub(crate) fn run(
         &mut self,
         state: &mut Gjk<V>,
+        touching: V::Scalar,
         options: GjkOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> Option<End> {
@@ -114,12 +115,8 @@ impl<'a, V: Vector> Search<'a, V> {
             return None;
         }
         let options = GjkOptions { limit: options.limit * per_unit + radius, ..options };
-        let end = gjk(state, &mut self.pair, self.frame, options, None, observer);
-        // The shortest vector is no vector where zero is within a simplex of full dimension.
-        if end != End::Overlap || state.simplex.points().len() <= V::DIM {
-            state.ensure_measured();
-        }
-        Some(end)
+        let frame = Frame { radius: touching, ..self.frame };
+        Some(measured(state, &mut self.pair, frame, options, observer))
     }
 
     /// The signed distance of bodies between whose cores GJK has found a plane, if they are apart by more than a few
@@ -163,6 +160,23 @@ impl<'a, V: Vector> Search<'a, V> {
     }
 }
 
+/// GJK, after which the shortest vector is measured, unless zero is within a simplex of full dimension: then there is
+/// no such vector.
+#[inline(always)]
+pub(super) fn measured<V: Vector>(
+    state: &mut Gjk<V>,
+    pair: &mut AnyPair<'_, V>,
+    frame: Frame<V>,
+    options: GjkOptions<V>,
+    observer: &mut Observer<'_, V>,
+) -> End {
+    let end = gjk(state, pair, frame, options, None, observer);
+    if end != End::Overlap || state.simplex.points().len() <= V::DIM {
+        state.ensure_measured();
+    }
+    end
+}
+
 /// A bound on the error of points of the difference of two cores of the given size, as a length, in the world's unit:
 /// no less than any [`Uncertainty`](super::Uncertainty), since no sum of products of coordinates is more than the product of the lengths,
 /// and the offset of the origins loses half an ε of its own.
@@ -179,4 +193,58 @@ pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
 #[inline(always)]
 pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
     S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::DVec3;
+    use convex_support::{Cuboid, InvalidShape, Posed, Rounded, SupportMap};
+
+    use super::*;
+    use crate::SignedDistanceOptions;
+    use crate::body::Both;
+    use crate::separation::{Begun, Cores, OfOverlap, Wanted, separation};
+
+    /// The answer of the first means, and whether that of all means is the same to the last bit.
+    fn apart(a: &impl SupportMap<Vector = DVec3>, b: &impl SupportMap<Vector = DVec3>) -> Option<bool> {
+        let shapes = Both::<_, _>::new(a, b);
+        let cores = shapes.cores();
+        let mut search = Search::new(&shapes, cores.each_ref());
+        let mut state = Gjk::new(search.frame.offset);
+        let (touching, options) = (search.frame.radius, GjkOptions::new(state.normal, 200));
+        let end = search.run(&mut state, touching, options, &mut Observer::none());
+        let known = search.apart(&state).filter(|_| end == Some(End::Separated))?;
+        let wanted = Wanted::new(OfOverlap::Known, SignedDistanceOptions::default(), None);
+        let mut cores = Cores::new(Search::new(&shapes, cores.each_ref()));
+        let found = separation::<_, false>(&mut cores, &wanted, Begun::Nothing, &mut Observer::none());
+        let all = found.distance(&cores, &wanted);
+        let numbers = (known.signed_distance, known.lower, known.upper, known.iterations);
+        let is_same = numbers == (all.distance, all.lower, all.upper, all.iterations)
+            && [Some(known.normal), Some(known.point_a), Some(known.point_b)]
+                == [all.normal, Some(all.point_a), Some(all.point_b)]
+            && (known.status, known.overlap) == (all.status, all.overlap);
+        Some(is_same)
+    }
+
+    #[test]
+    fn bodies_that_are_plainly_apart_have_the_answer_of_all_means() -> Result<(), InvalidShape> {
+        for scale in [1e-100, 1e-3, 1.0, 1e6, 1e100] {
+            let cube = Cuboid::new(DVec3::splat(scale))?;
+            let round = Rounded::new(cube, scale * 0.25)?;
+            for gap in [1e-12, 1e-6, 0.1, 3.0] {
+                let over = |aside| Posed::translated(cube, DVec3::new(aside, 2.0 + gap, 0.3) * scale);
+                for aside in [0.2, 2.5, -3.0] {
+                    assert_eq!(apart(&over(aside)?, &cube), Some(true), "{scale:e} {gap:e} {aside}");
+                    let round_over = Posed::translated(round, DVec3::new(aside, 2.5 + gap, 0.3) * scale)?;
+                    assert_eq!(apart(&round_over, &round), Some(true), "{scale:e} {gap:e} {aside}");
+                }
+            }
+            // Within rounding of contact, and in overlap, the other means decide.
+            for y in [2.0, 1.9] {
+                let near = Posed::translated(cube, DVec3::new(0.2, y, 0.3) * scale)?;
+                assert_eq!(apart(&near, &cube), None, "{scale:e} {y}");
+            }
+        }
+        Ok(())
+    }
 }

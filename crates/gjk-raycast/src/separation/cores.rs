@@ -5,10 +5,10 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::Wanted;
-use super::apart::{Search, error_of_points};
+use super::apart::{Search, error_of_points, measured};
 use super::near::{NearContact, Uncertainty};
 use crate::body::{AnyPair, Pair, PointPair, TracedSupport as _};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, first_direction, gjk};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, first_direction};
 use crate::observer::Observer;
 use crate::unit::lost_to_underflow;
 
@@ -196,9 +196,9 @@ impl<'a, V: Vector> Cores<'a, V> {
         wanted.options.limit * self.frame.per_unit + self.frame.radius
     }
 
-    /// GJK, from the closest points where they are known, until what is wanted of the distance of the cores is known,
-    /// or they meet to rounding: of those who ask for the depth even where the radii overlap. The shortest vector is
-    /// measured, unless it is no vector, since zero is within a simplex of full dimension.
+    /// GJK on the cores, from their closest points where these are known, until their distance is known as well as is
+    /// wanted. The search also ends where the bodies meet to rounding; but where the depth is wanted, bodies whose radii
+    /// overlap have it by the distance of their cores, so that only cores which meet end the search.
     #[inline]
     pub(super) fn approach(
         &mut self,
@@ -220,10 +220,7 @@ impl<'a, V: Vector> Cores<'a, V> {
             sub_algorithm: wanted.sub_algorithm,
             ..GjkOptions::new(state.normal, wanted.options.max_iterations.saturating_sub(self.iterations))
         };
-        let end = gjk(state, &mut self.pair, frame, options, None, observer);
-        if end != End::Overlap || state.simplex.points().len() <= V::DIM {
-            state.ensure_measured();
-        }
+        let end = measured(state, &mut self.pair, frame, options, observer);
         self.iterations += state.iterations;
         end
     }

@@ -13,7 +13,7 @@ mod distances;
 mod near;
 
 use convex_support::numerics::bound::least;
-use convex_support::{Core, Scalar, Vector};
+use convex_support::{Core, Parallelotope, Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Pair, PointPair, Shapes};
@@ -113,15 +113,22 @@ pub(crate) struct Separation<V: Vector> {
     pub(crate) unexpanded: usize,
 }
 
+/// What is known before the search for a separation.
+pub(crate) enum Begun<'s, V: Vector> {
+    Nothing,
+    /// The cores of two boxes without radii that may overlap.
+    Boxes(&'s [Parallelotope<V>; 2]),
+    /// The state of a [first search](Search::run), and how it ended.
+    Searched(&'s mut Gjk<V>, End),
+}
+
 /// The separation of two cores, and their depth. Both are compiled once for all callers, so that a program without
 /// depths has no code for them.
-///
-/// It goes on from what a [first search](Search::run) has `found`, or begins.
 #[inline(never)]
 pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     cores: &mut Cores<'_, V>,
     wanted: &Wanted<V>,
-    found: Option<(&mut Gjk<V>, End)>,
+    begun: Begun<'_, V>,
     observer: &mut Observer<'_, V>,
 ) -> Separation<V> {
     debug_assert_eq!(IS_DEPTH, wanted.is_depth(), "the constant must agree with the wanted answer");
@@ -131,15 +138,13 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     };
     let (mut closest, mut is_near) = (None, false);
     let mut first;
-    let (state, end) = if let Some((state, end)) = found {
+    let (state, end) = if let Begun::Searched(state, end) = begun {
         cores.iterations += state.iterations;
         (state, end)
     } else {
         if IS_DEPTH {
-            // Rounded cores are mostly apart, which only a search can tell.
-            let is_rounded = cores.radius() > Scalar::ZERO;
-            if !is_rounded
-                && let Some(known) = cores.closed_form(options.axis)
+            if let Begun::Boxes(parts) = begun
+                && let Some(known) = cores.closed_form(parts, options.axis)
                 && known.inner > Scalar::ZERO
             {
                 return Separation::of_closed_form(known);
@@ -169,7 +174,7 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     is_near |= is_stalled;
     if is_near && !IS_DEPTH && rare.is_some() && !wanted.is_plain() {
         // Where rounding decides, it has to decide alike wherever a query begins.
-        return separation::<V, IS_DEPTH>(cores, &wanted.plain(), None, observer);
+        return separation::<V, IS_DEPTH>(cores, &wanted.plain(), Begun::Nothing, observer);
     }
     if is_near
         && (closest.is_none() || is_stalled)

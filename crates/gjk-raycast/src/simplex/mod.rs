@@ -85,6 +85,10 @@ impl<V: Vector> Simplex<V> {
     /// Keeps only a face, without weights.
     #[inline]
     pub(crate) fn keep(&mut self, face: Face) {
+        // Until the simplex is a triangle, mostly all of its points are kept.
+        if face == Face::with_all(self.len) {
+            return;
+        }
         let mut kept = 0;
         for i in 0..MAX_POINTS {
             if i < self.len && face.has(i) {
@@ -157,6 +161,12 @@ impl Face {
             bits |= 1 << corner;
         }
         Self(bits)
+    }
+
+    /// The face with the first `len` points as corners.
+    #[inline(always)]
+    fn with_all(len: usize) -> Self {
+        Self((1 << (len % u8::BITS as usize)) - 1)
     }
 
     pub(crate) fn len(self) -> usize {
