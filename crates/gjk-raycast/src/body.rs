@@ -352,6 +352,14 @@ impl<T: Shapes + ?Sized> Pair<'_, T> {
         Some([of(a, self.core_a)?, of(b, self.core_b)?])
     }
 
+    /// The same for two bodies that may overlap, with origins that differ by `offset` in the unit.
+    #[inline(always)]
+    pub(crate) fn parallelotopes_within_reach(&self, offset: T::Vector) -> Option<[Parallelotope<T::Vector>; 2]> {
+        let reach = self.extent() * self.per_unit;
+        // Balls about the cores are apart.
+        if offset.length_squared() > reach * reach { None } else { self.parallelotopes() }
+    }
+
     /// The vector between the [closest points](Self::closest_points) of bodies whose origins differ by `offset` in the
     /// unit, which is along the normal of the plane between them.
     #[inline(always)]

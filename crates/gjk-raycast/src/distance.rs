@@ -5,9 +5,10 @@ use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once, compiled_t
 use num_traits::Float as _;
 
 use crate::body::{Both, Shapes};
+use crate::gjk::{End, Gjk, GjkOptions, first_direction};
 use crate::observer::Observer;
 use crate::options::{MAX_ITERATIONS, MayBeLean, Rare, options};
-use crate::separation::{Cores, OfOverlap, RareInDistances, Wanted, direct, separation};
+use crate::separation::{Begun, Cores, OfOverlap, RareInDistances, Search, Wanted, direct, separation};
 use crate::shape::Shape;
 use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, SubAlgorithm};
 
@@ -148,12 +149,8 @@ fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     if let Some(near) = near.filter(|near| near.upper > Scalar::ZERO) {
         return near_distance(near, cores.map(|core| core.radius));
     }
-    if let Some(SignedDistance {
-        signed_distance, lower, upper, normal, point_a, point_b, status, iterations, ..
-    }) = known
-    {
-        let (distance, overlap, normal) = (signed_distance, false, Some(normal));
-        return Distance { distance, lower, upper, overlap, point_a, point_b, normal, status, iterations };
+    if let Some(known) = known {
+        return Distance::of_apart(known);
     }
     // In variables of their own, so that the closed form has them in registers.
     let [core_a, core_b] = cores;
@@ -191,23 +188,62 @@ compiled_once! {
         options: DistanceOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> Distance<V> {
-        let DistanceOptions { tolerance, limit, max_iterations, axis, sub_algorithm, rare } = options;
-        let axis = axis.map(|axis| if is_swapped { -axis } else { axis });
+        let axis = options.axis.map(|axis| if is_swapped { -axis } else { axis });
         // No distance is negative. NaN is no limit.
-        let limit = if limit < Scalar::ZERO { Scalar::ZERO } else { limit };
-        // How deep bodies are that certainly overlap is not asked.
-        let depth_limit = Scalar::ZERO;
-        let of_separation = SignedDistanceOptions { limit, depth_limit, max_iterations, axis, ..Default::default() };
-        let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation, rare.0) };
-        let mut cores = Cores::new(shapes, cores);
-        let found = observer.of_swapped(is_swapped, |observer| separation::<_, false>(&mut cores, &wanted, observer));
-        let mut answer = found.distance(&cores, &wanted);
+        let limit = if options.limit < Scalar::ZERO { Scalar::ZERO } else { options.limit };
+        let begin = (axis, limit);
+        let mut answer = observer.of_swapped(is_swapped, |observer| searched(shapes, cores, begin, &options, observer));
         // In place: a copy would wait until the answer is in the cache.
         if is_swapped {
             answer = answer.reversed();
         }
         answer
     }
+}
+
+/// The distance of bodies in order, with their own axis and limit in place of those of the options.
+#[inline(always)]
+fn searched<V: Vector>(
+    shapes: &dyn Shapes<Vector = V>,
+    cores: [&Core<V>; 2],
+    (axis, limit): (Option<V>, V::Scalar),
+    options: &DistanceOptions<V>,
+    observer: &mut Observer<'_, V>,
+) -> Distance<V> {
+    let &DistanceOptions { tolerance, max_iterations, sub_algorithm, .. } = options;
+    let mut search = Search::new(shapes, cores);
+    let mut state = Gjk::new(first_direction(axis, search.frame.offset));
+    let gjk_options = GjkOptions { limit, tolerance, sub_algorithm, ..GjkOptions::new(state.normal, max_iterations) };
+    let touching = search.frame.radius;
+    let end = search.run(&mut state, touching, gjk_options, observer);
+    if end == Some(End::Separated)
+        && let Some(known) = search.apart(&state)
+    {
+        let allowed = search.frame.widest() + tolerance.max(Scalar::ZERO) * known.lower;
+        if known.upper - known.lower <= allowed || known.lower > limit {
+            return Distance::of_apart(known);
+        }
+    }
+    let begun = end.map_or(Begun::Nothing, |end| Begun::Searched(&mut state, end));
+    searched_closely(search, begun, (axis, limit), options, observer)
+}
+
+/// The distance of bodies that are not plainly apart, after a first search for it.
+#[cold]
+#[inline(never)]
+fn searched_closely<V: Vector>(
+    search: Search<'_, V>,
+    begun: Begun<'_, V>,
+    (axis, limit): (Option<V>, V::Scalar),
+    &DistanceOptions { tolerance, max_iterations, sub_algorithm, rare, .. }: &DistanceOptions<V>,
+    observer: &mut Observer<'_, V>,
+) -> Distance<V> {
+    // How deep bodies are that certainly overlap is not asked.
+    let depth_limit = Scalar::ZERO;
+    let of_separation = SignedDistanceOptions { limit, depth_limit, max_iterations, axis, ..Default::default() };
+    let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation, rare.0) };
+    let mut cores = Cores::new(search);
+    separation::<_, false>(&mut cores, &wanted, begun, observer).distance(&cores, &wanted)
 }
 
 /// Calls `ask` with the distance of `a[k]` and `b[k]`, and writes what it returns into `answers[k]`, for each k.
@@ -277,6 +313,14 @@ pub struct FreeStep<S> {
 }
 
 impl<V: Vector> Distance<V> {
+    /// The answer for bodies that are apart by a signed distance.
+    #[inline(always)]
+    fn of_apart(apart: SignedDistance<V>) -> Self {
+        let SignedDistance { lower, upper, point_a, point_b, status, iterations, .. } = apart;
+        let (distance, normal, overlap) = (apart.signed_distance, Some(apart.normal), false);
+        Self { distance, lower, upper, overlap, point_a, point_b, normal, status, iterations }
+    }
+
     /// The changes of the pose of `a` that leave it farther from `b` than a margin.
     ///
     /// A change turns `a` by an angle about any axis through the pivot, and moves it. No point goes farther than the

@@ -3,9 +3,10 @@
 use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
-use crate::body::{Both, Shapes};
+use crate::body::{Both, Shapes, TracedSupport as _};
+use crate::gjk::{End, Gjk, GjkOptions, first_direction};
 use crate::observer::Observer;
-use crate::separation::{Cores, OfOverlap, RareInDistances, Separation, Wanted, direct, separation};
+use crate::separation::{Begun, Cores, OfOverlap, RareInDistances, Search, Separation, Wanted, direct, separation};
 use crate::shape::Shape;
 use crate::{Iterate, SignedDistance, SignedDistanceOptions, Status};
 
@@ -92,15 +93,59 @@ compiled_once! {
         let axis = options.axis.map(|axis| if is_swapped { -axis } else { axis });
         let options = SignedDistanceOptions { axis, ..options };
         let wanted = Wanted::new(OfOverlap::Depth, options, Some(&RareInDistances::WITH_DEPTH));
-        let mut cores = Cores::new(shapes, cores);
-        let found = observer.of_swapped(is_swapped, |observer| separation::<_, true>(&mut cores, &wanted, observer));
-        let mut answer = found.signed_distance(&cores, &wanted);
+        let mut answer = observer.of_swapped(is_swapped, |observer| searched(shapes, cores, &wanted, observer));
         // In place: a copy would wait until the answer is in the cache.
         if is_swapped {
             answer = answer.reversed();
         }
         answer
     }
+}
+
+/// The signed distance of bodies in order, with options that are theirs.
+#[inline(always)]
+fn searched<V: Vector>(
+    shapes: &dyn Shapes<Vector = V>,
+    cores: [&Core<V>; 2],
+    wanted: &Wanted<V>,
+    observer: &mut Observer<'_, V>,
+) -> SignedDistance<V> {
+    let SignedDistanceOptions { limit, max_iterations, axis, .. } = wanted.options;
+    let mut search = Search::new(shapes, cores);
+    // Rounded boxes are mostly apart, which only a search can tell.
+    let is_rounded = search.pair.radius() > Scalar::ZERO;
+    let boxes = if is_rounded { None } else { search.pair.parallelotopes_within_reach(search.frame.offset) };
+    if let Some(boxes) = &boxes {
+        return searched_closely(search, Begun::Boxes(boxes), wanted, observer);
+    }
+    // Curved bodies may be known to overlap by the normal of an earlier answer.
+    if axis.is_some() && search.pair.is_curved() {
+        return searched_closely(search, Begun::Nothing, wanted, observer);
+    }
+    let mut state = Gjk::new(first_direction(axis, search.frame.offset));
+    let options = GjkOptions { limit, ..GjkOptions::new(state.normal, max_iterations) };
+    let Some(end) = search.run(&mut state, Scalar::ZERO, options, observer) else {
+        return searched_closely(search, Begun::Nothing, wanted, observer);
+    };
+    if end == End::Separated
+        && let Some(known) = search.apart(&state)
+        && (known.upper - known.lower <= search.frame.widest() * Scalar::from_f64(2.0) || known.lower > limit)
+    {
+        return known;
+    }
+    searched_closely(search, Begun::Searched(&mut state, end), wanted, observer)
+}
+
+/// The signed distance of bodies that are not plainly apart, after a first search for it.
+#[inline(never)]
+fn searched_closely<V: Vector>(
+    search: Search<'_, V>,
+    begun: Begun<'_, V>,
+    wanted: &Wanted<V>,
+    observer: &mut Observer<'_, V>,
+) -> SignedDistance<V> {
+    let mut cores = Cores::new(search);
+    separation::<_, true>(&mut cores, wanted, begun, observer).signed_distance(&cores, wanted)
 }
 
 impl<V: Vector> Separation<V> {
@@ -137,9 +182,9 @@ impl<V: Vector> Separation<V> {
     }
 }
 
-/// [`signed_distance`] with the normal of the plane that proves its lower bound, for searches in time. Near contact it
-/// leaves out the second measurement, and its bounds have the errors of GJK: the caller looks at the bodies again a
-/// moment later, and needs exact numbers only of the last look.
+/// [`signed_distance`] for searches in time. Of bodies near contact its bounds have the errors of GJK, because it leaves
+/// out the second measurement: a search in time asks about the same bodies again a moment later, and needs exact numbers
+/// of the last of these times only.
 #[inline]
 pub(crate) fn rough_signed_distance<V: Vector>(
     shapes: &dyn Shapes<Vector = V>,
@@ -148,9 +193,8 @@ pub(crate) fn rough_signed_distance<V: Vector>(
 ) -> SignedDistance<V> {
     let parts = shapes.cores();
     direct(shapes, parts, options.max_iterations, &mut Observer::none(), |_, _| None).unwrap_or_else(|| {
-        let mut cores = Cores::new(shapes, parts.each_ref());
         let wanted = Wanted::new(OfOverlap::RoughDepth, options, rare);
-        separation::<_, true>(&mut cores, &wanted, &mut Observer::none()).signed_distance(&cores, &wanted)
+        searched(shapes, parts.each_ref(), &wanted, &mut Observer::none())
     })
 }
 

@@ -41,6 +41,13 @@ impl<V: Vector> Frame<V> {
         Self { scale, per_unit, offset: offset * per_unit, radius, noise, error }
     }
 
+    /// How wide the bracket on a distance may be at most that rounding alone has left, in the world's unit: the bounds
+    /// that end a search differ by the noise, and each is wrong by no more than the error.
+    #[inline(always)]
+    pub(crate) fn widest(&self) -> V::Scalar {
+        self.error * self.scale * Scalar::from_f64(3.0)
+    }
+
     /// Cores no farther apart than this touch.
     #[inline(always)]
     fn touching(&self) -> V::Scalar {

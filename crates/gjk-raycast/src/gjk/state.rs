@@ -183,7 +183,7 @@ impl<V: Vector> Gjk<V> {
     /// boxes took 14 % longer.
     #[inline(always)]
     pub(super) fn step(&mut self, y: V, sub_algorithm: SubAlgorithm) -> bool {
-        if sub_algorithm != SubAlgorithm::Regions {
+        if !matches!(sub_algorithm, SubAlgorithm::Regions) {
             return self.step_by(sub_algorithm);
         }
         let (points, newest) = self.simplex.padded();

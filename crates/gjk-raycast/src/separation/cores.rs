@@ -1,13 +1,14 @@
 //! The difference of two cores: its support points, their errors, and the result of GJK on it.
 
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Core, Scalar, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::Wanted;
-use super::near::{NearContact, SUM, Uncertainty};
-use crate::body::{AnyPair, Pair, PointPair, Shapes, TracedSupport as _};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, first_direction, gjk};
+use super::apart::{Search, error_of_points, measured};
+use super::near::{NearContact, Uncertainty};
+use crate::body::{AnyPair, Pair, PointPair, TracedSupport as _};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, first_direction};
 use crate::observer::Observer;
 use crate::unit::lost_to_underflow;
 
@@ -44,12 +45,8 @@ pub(crate) struct Cores<'a, V: Vector> {
 
 impl<'a, V: Vector> Cores<'a, V> {
     #[inline(always)]
-    pub(crate) fn new(shapes: &'a (dyn Shapes<Vector = V> + 'a), cores: [&'a Core<V>; 2]) -> Self {
-        let mut pair = Pair::new(shapes, cores);
-        let offset = pair.core_a.origin - pair.core_b.origin;
-        let size = pair.size(offset);
+    pub(crate) fn new(Search { pair, frame, size }: Search<'a, V>) -> Self {
         let radii = [pair.core_a.radius, pair.core_b.radius];
-        let frame = Frame::new(&mut pair, offset, size);
         let error = error_of_points(&pair, size) * frame.per_unit + lost_to_underflow(frame.scale);
         let (zero, lost_in_offset, size) = (Scalar::ZERO, V::ZERO, size * frame.per_unit);
         Self {
@@ -172,13 +169,6 @@ impl<'a, V: Vector> Cores<'a, V> {
         p.norm() + self.uncertainty.as_ref().map_or(self.error, |known| known.beyond(p)) + self.peeled_error
     }
 
-    /// How wide the bracket on a distance may be at most that rounding alone has left, in the world's unit: the bounds
-    /// that end a search differ by the noise, and each is wrong by no more than the error.
-    #[inline(always)]
-    pub(super) fn widest(&self) -> V::Scalar {
-        self.frame.error * self.frame.scale * Scalar::from_f64(3.0)
-    }
-
     /// What GJK moves points by as it compares them.
     pub(super) fn noise(&self) -> V::Scalar {
         self.frame.noise
@@ -206,9 +196,9 @@ impl<'a, V: Vector> Cores<'a, V> {
         wanted.options.limit * self.frame.per_unit + self.frame.radius
     }
 
-    /// GJK, from the closest points where they are known, until what is wanted of the distance of the cores is known,
-    /// or they meet to rounding: of those who ask for the depth even where the radii overlap. The shortest vector is
-    /// measured, unless it is no vector, since zero is within a simplex of full dimension.
+    /// GJK on the cores, from their closest points where these are known, until their distance is known as well as is
+    /// wanted. The search also ends where the bodies meet to rounding; but where the depth is wanted, bodies whose radii
+    /// overlap have it by the distance of their cores, so that only cores which meet end the search.
     #[inline]
     pub(super) fn approach(
         &mut self,
@@ -230,22 +220,8 @@ impl<'a, V: Vector> Cores<'a, V> {
             sub_algorithm: wanted.sub_algorithm,
             ..GjkOptions::new(state.normal, wanted.options.max_iterations.saturating_sub(self.iterations))
         };
-        let end = gjk(state, &mut self.pair, frame, options, None, observer);
-        if end != End::Overlap || state.simplex.points().len() <= V::DIM {
-            state.ensure_measured();
-        }
+        let end = measured(state, &mut self.pair, frame, options, observer);
         self.iterations += state.iterations;
         end
     }
-}
-
-/// A bound on the error of points of the difference of two cores of the given size, as a length, in the world's unit:
-/// no less than any [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths,
-/// and the offset of the origins loses half an ε of its own.
-#[inline(always)]
-pub(crate) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
-    pair: &Pair<'_, T>,
-    size: V::Scalar,
-) -> V::Scalar {
-    pair.error() + (size - pair.radius()) * (V::Scalar::EPSILON * Scalar::from_f64(SUM))
 }

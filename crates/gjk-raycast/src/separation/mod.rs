@@ -6,21 +6,22 @@
 //! polytope. For a depth, the closed form for two boxes comes before them. A plain distance needs no more than this
 //! file and GJK.
 
+mod apart;
 mod cores;
 mod depth;
 mod distances;
 mod near;
 
 use convex_support::numerics::bound::least;
-use convex_support::{Core, Scalar, Vector};
+use convex_support::{Core, Parallelotope, Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Pair, PointPair, Shapes, TracedSupport as _};
-use crate::gjk::{End, Gjk, NEAR, rounding};
+use crate::body::{Pair, PointPair, Shapes};
+use crate::gjk::{End, Gjk};
 use crate::observer::Observer;
-use crate::{Iterate, Status, SubAlgorithm};
+use crate::{Status, SubAlgorithm};
+pub(crate) use apart::{Search, direct, slack};
 pub(crate) use cores::Cores;
-use cores::error_of_points;
 pub use distances::{Distance, SignedDistance, SignedDistanceOptions};
 pub(crate) use near::{FromContact, NearContact, ProjectedFace, Uncertainty, across_corners};
 pub(crate) use near::{in_double, look_after, near_contact_of, room_within};
@@ -112,59 +113,75 @@ pub(crate) struct Separation<V: Vector> {
     pub(crate) unexpanded: usize,
 }
 
+/// What is known before the search for a separation.
+pub(crate) enum Begun<'s, V: Vector> {
+    Nothing,
+    /// The cores of two boxes without radii that may overlap.
+    Boxes(&'s [Parallelotope<V>; 2]),
+    /// The state of a [first search](Search::run), and how it ended.
+    Searched(&'s mut Gjk<V>, End),
+}
+
 /// The separation of two cores, and their depth. Both are compiled once for all callers, so that a program without
 /// depths has no code for them.
 #[inline(never)]
 pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
     cores: &mut Cores<'_, V>,
     wanted: &Wanted<V>,
+    begun: Begun<'_, V>,
     observer: &mut Observer<'_, V>,
 ) -> Separation<V> {
     debug_assert_eq!(IS_DEPTH, wanted.is_depth(), "the constant must agree with the wanted answer");
     let (options, rare) = (&wanted.options, wanted.rare);
-    if IS_DEPTH {
-        // Rounded cores are mostly apart, which only a search can tell.
-        let is_rounded = cores.radius() > Scalar::ZERO;
-        if !is_rounded
-            && let Some(known) = cores.closed_form(options.axis)
-            && known.inner > Scalar::ZERO
-        {
-            return Separation::of_closed_form(known);
-        }
-        // Cores that overlapped in the last frame do so still, if no plane across its normal tells them apart.
-        let is_warm = options.axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
-        if is_warm {
-            let _ = cores.peel();
-        }
-    }
-    let closest = cores.closest_points();
     let tells_all = |cores: &mut Cores<'_, V>, state: Option<&Gjk<V>>| {
         rare.is_some_and(|rare| (rare.look_near)(cores, wanted, state))
     };
-    // If the closest points are known, there is nothing to search near contact.
-    let mut is_near = closest.is_some_and(|(_, v)| cores.is_near(v.length()));
-    if is_near
-        && tells_all(cores, None)
-        && let Some(near) = &cores.near
-    {
-        return Separation::of_near_contact(cores, near);
-    }
-    let mut state = cores.first_state(options.axis);
-    let end = cores.approach(wanted, &mut state, closest, observer);
-    is_near |= closest.is_none() && cores.are_near(&mut state);
+    let (mut closest, mut is_near) = (None, false);
+    let mut first;
+    let (state, end) = if let Begun::Searched(state, end) = begun {
+        cores.iterations += state.iterations;
+        (state, end)
+    } else {
+        if IS_DEPTH {
+            if let Begun::Boxes(parts) = begun
+                && let Some(known) = cores.closed_form(parts, options.axis)
+                && known.inner > Scalar::ZERO
+            {
+                return Separation::of_closed_form(known);
+            }
+            // Cores that overlapped in the last frame do so still, if no plane across its normal tells them apart.
+            let is_warm = options.axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
+            if is_warm {
+                let _ = cores.peel();
+            }
+        }
+        closest = cores.closest_points();
+        // If the closest points are known, there is nothing to search near contact.
+        is_near = closest.is_some_and(|(_, v)| cores.is_near(v.length()));
+        if is_near
+            && tells_all(cores, None)
+            && let Some(near) = &cores.near
+        {
+            return Separation::of_near_contact(cores, near);
+        }
+        first = cores.first_state(options.axis);
+        let end = cores.approach(wanted, &mut first, closest, observer);
+        (&mut first, end)
+    };
+    is_near |= closest.is_none() && cores.are_near(state);
     // Where support points alone made no progress, a distance is measured again, however far apart the bodies are.
     let is_stalled = !IS_DEPTH && end == End::Stalled && state.length.is_finite();
     is_near |= is_stalled;
     if is_near && !IS_DEPTH && rare.is_some() && !wanted.is_plain() {
         // Where rounding decides, it has to decide alike wherever a query begins.
-        return separation::<V, IS_DEPTH>(cores, &wanted.plain(), observer);
+        return separation::<V, IS_DEPTH>(cores, &wanted.plain(), Begun::Nothing, observer);
     }
     if is_near
         && (closest.is_none() || is_stalled)
-        && tells_all(cores, Some(&state))
+        && tells_all(cores, Some(state))
         && let Some(near) = &cores.near
     {
-        return Separation::of_near_contact(cores, near).with_best_plane(cores, &state);
+        return Separation::of_near_contact(cores, near).with_best_plane(cores, state);
     }
     let is_known = if IS_DEPTH {
         end == End::Separated && cores.is_well_apart(state.length)
@@ -172,9 +189,9 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
         end != End::Stalled && !(is_near && rare.is_none())
     };
     if !is_known && let Some(reach) = rare.and_then(|rare| rare.reach_closely) {
-        return reach(cores, wanted, &mut state, end, observer);
+        return reach(cores, wanted, state, end, observer);
     }
-    let mut known = Separation::of_gjk(cores, &mut state, end);
+    let mut known = Separation::of_gjk(cores, state, end);
     let is_full = end == End::Overlap && state.simplex.points().len() > V::DIM;
     if IS_DEPTH {
         if !is_known && is_full {
@@ -271,7 +288,7 @@ impl<V: Vector> Separation<V> {
             true => (signed_lower.max(zero), upper.max(zero)),
             false => (zero, V::Scalar::infinity()),
         };
-        let (allowed, three) = (cores.widest(), V::Scalar::from_f64(3.0));
+        let (allowed, three) = (cores.frame.widest(), V::Scalar::from_f64(3.0));
         let is_narrow = upper - lower <= allowed + wanted.tolerance.max(zero) * lower || lower > wanted.options.limit;
         let value = self.value(cores);
         // Bodies touch if their points are as near as their error, and a second measurement that was not cut short has
@@ -337,75 +354,4 @@ impl<V: Vector> MetPoint<V> {
         let is_known = state.length.is_finite() && sum > V::Scalar::ZERO;
         Self { point, points, reached: if is_known { cores.greatest_length(point) } else { V::Scalar::infinity() } }
     }
-}
-
-/// The rounding of a signed distance in the world's unit: unit vectors are so to 2ε, and the sum of the radii and the
-/// two sums that the radii and the length go into round to half of that.
-#[inline(always)]
-pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
-    S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
-}
-
-/// The signed distance of shapes whose cores are apart by more than a few errors, and whose closest points are known
-/// in closed form, such as a ball and a box, whether they overlap or not. There is nothing to search, and everything
-/// is computed in the world's unit. Near contact they are measured again, in single precision at once.
-///
-/// The plane of the support point across the vector between those points is as far as they are, to rounding;
-/// otherwise the search takes over.
-#[inline(always)]
-pub(crate) fn direct<T: Shapes + ?Sized>(
-    shapes: &T,
-    cores: [Core<T::Vector>; 2],
-    max_iterations: usize,
-    observer: &mut Observer<'_, T::Vector>,
-    in_double: impl FnOnce([&Core<T::Vector>; 2], &PointPair<T::Vector>) -> Option<SignedDistance<T::Vector>>,
-) -> Option<SignedDistance<T::Vector>> {
-    let mut pair = Pair::new(shapes, cores.each_ref());
-    let offset = pair.core_a.origin - pair.core_b.origin;
-    let size = pair.size(offset);
-    let points = pair.closest_points(offset, size)?;
-    let v = pair.vector_between(points, offset);
-    let (length, radius, error) = (v.length(), pair.radius(), error_of_points(&pair, size));
-    // The gap below which the distance is measured again; it allows for more rounding.
-    let near = (rounding(size) + pair.error()) * Scalar::from_f64(NEAR);
-    if max_iterations == 0 {
-        return None;
-    }
-    // NaN is left to the search.
-    if !(length.min((length - radius).abs()) > near) {
-        if size_of::<<T::Vector as Vector>::Scalar>() >= size_of::<f64>() {
-            return None;
-        }
-        // In variables of their own, so that the closed form has them in registers.
-        let [core_a, core_b] = cores;
-        let known = in_double([&core_a, &core_b], &PointPair { ..points })?;
-        let [lower, upper] = [known.lower, known.upper].map(|bound| bound + radius);
-        let (scale, simplex, w) = (Scalar::ONE, [v], v);
-        observer.show(|| Iterate { iteration: 0, simplex: &simplex, v, w, scale, lower, upper });
-        return Some(known);
-    }
-    let w = pair.support(-v).0 + offset;
-    let lower = (v.dot(w) / length).min(length);
-    if !(length - lower <= rounding(size)) {
-        return None;
-    }
-    let (scale, upper) = (Scalar::ONE, length);
-    let simplex = [v];
-    observer.show(|| Iterate { iteration: 0, simplex: &simplex, v, w, scale, lower, upper });
-    let normal = v / length;
-    let signed_distance = length - radius;
-    // What a vector is wrong by across adds no more to its length than that squared, by twice the length.
-    let (lower, upper) = (lower - error - radius, length + error + error * (error / length) - radius);
-    Some(SignedDistance {
-        signed_distance,
-        lower: lower - slack(lower, radius),
-        upper: upper + slack(upper, radius),
-        normal,
-        point_a: pair.core_a.origin + points.a - normal * pair.core_a.radius,
-        point_b: pair.core_b.origin + points.b + normal * pair.core_b.radius,
-        overlap: signed_distance <= Scalar::ZERO,
-        status: Status::Converged,
-        iterations: 1,
-        unexpanded: 0,
-    })
 }

@@ -85,6 +85,10 @@ impl<V: Vector> Simplex<V> {
     /// Keeps only a face, without weights.
     #[inline]
     pub(crate) fn keep(&mut self, face: Face) {
+        // Until the simplex is a triangle, mostly all of its points are kept.
+        if face == Face::with_all(self.len) {
+            return;
+        }
         let mut kept = 0;
         for i in 0..MAX_POINTS {
             if i < self.len && face.has(i) {
@@ -131,6 +135,11 @@ impl<V: Vector> Simplex<V> {
         &self.witnesses[..self.len]
     }
 
+    /// The points with their weights and the points that they come from.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = (V, V::Scalar, PointPair<V>)> + '_ {
+        (0..self.len.min(MAX_POINTS)).map(|i| (self.points[i], self.weights[i], self.witnesses[i]))
+    }
+
     pub(crate) fn weighted(&self) -> impl Iterator<Item = (V::Scalar, PointPair<V>)> + '_ {
         (0..self.len).map(|i| (self.weights[i], self.witnesses[i]))
     }
@@ -152,6 +161,12 @@ impl Face {
             bits |= 1 << corner;
         }
         Self(bits)
+    }
+
+    /// The face with the first `len` points as corners.
+    #[inline(always)]
+    fn with_all(len: usize) -> Self {
+        Self((1 << (len % u8::BITS as usize)) - 1)
     }
 
     pub(crate) fn len(self) -> usize {

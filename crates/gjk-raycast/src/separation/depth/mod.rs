@@ -9,7 +9,7 @@ mod expansion;
 mod newton;
 mod witness;
 
-use convex_support::{Scalar, Vector};
+use convex_support::{Parallelotope, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::cores::{Cores, Vertex};
@@ -49,8 +49,9 @@ fn reach_closely<V: Vector>(
 ) -> Separation<V> {
     let options = &wanted.options;
     let is_rounded = !cores.is_peeled() && cores.radius() > Scalar::ZERO;
-    let known = if is_rounded && end == End::Overlap { cores.closed_form(options.axis) } else { None };
-    let known = if let Some(known) = known {
+    let is_deep = is_rounded && end == End::Overlap;
+    let parts = if is_deep { cores.pair.parallelotopes_within_reach(cores.frame.offset) } else { None };
+    let known = if let Some(known) = parts.and_then(|parts| cores.closed_form(&parts, options.axis)) {
         Separation::of_closed_form(known)
     } else {
         // Half of the allowed support points is left for a second run.
@@ -211,15 +212,9 @@ impl<V: Vector> Cores<'_, V> {
     /// The way out of two parallelotopes that certainly overlap; a plane across `axis`, or across their offset, may
     /// tell them apart at once.
     #[inline(always)]
-    pub(super) fn closed_form(&mut self, axis: Option<V>) -> Option<ClosedForm<V>> {
-        let reach = self.pair.extent() * self.frame.per_unit;
-        if self.frame.offset.length_squared() > reach * reach {
-            // Balls about the cores are apart.
-            return None;
-        }
-        let parts = self.pair.parallelotopes()?;
+    pub(super) fn closed_form(&mut self, parts: &[Parallelotope<V>; 2], axis: Option<V>) -> Option<ClosedForm<V>> {
         let Frame { offset, per_unit, .. } = self.frame;
-        let zonotope = Zonotope::new(&parts, offset, per_unit);
+        let zonotope = Zonotope::new(parts, offset, per_unit);
         if zonotope.is_beyond(axis.unwrap_or(offset)) {
             return None;
         }
@@ -232,7 +227,7 @@ impl<V: Vector> Cores<'_, V> {
         let half_ulp = V::Scalar::EPSILON * Scalar::from_f64(0.5 * nearest.depth);
         let [depth, inner, outer] = [nearest.depth, nearest.inner, nearest.outer].map(Scalar::from_f64);
         let error = error + half_ulp;
-        let points = nearest.points(&parts, offset, per_unit);
+        let points = nearest.points(parts, offset, per_unit);
         Some(ClosedForm { u: nearest.unit(), depth, inner: inner - error, outer: outer + error, points })
     }
 

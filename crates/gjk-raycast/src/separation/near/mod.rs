@@ -66,7 +66,7 @@ impl<V: Vector> NearContact<V> {
         is_found.then_some(true)
     }
 
-    /// Whether a further search would find no more.
+    /// Whether a further search is in vain: the bounds are closed, or the bodies certainly have points in common.
     pub(crate) fn is_settled(&self) -> bool {
         self.is_closed() || self.overlaps_certainly
     }

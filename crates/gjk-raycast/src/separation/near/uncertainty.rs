@@ -31,7 +31,8 @@ pub(crate) struct Uncertainty<V: Vector> {
 }
 
 impl<V: Vector> Uncertainty<V> {
-    /// What the shapes state, in the unit: of points that are added up without rounding.
+    /// The error of the difference of two support points that is not rounded itself: what both shapes state of them, in
+    /// the unit.
     pub(crate) fn new(pair: &AnyPair<'_, V>, per_unit: V::Scalar) -> Self {
         let Self { extent, stated, stated_length, lost } = Self::of(pair.shapes.each().map(|shape| shape.rounding()));
         let stated_length = stated_length.min(pair.error()) * per_unit;
