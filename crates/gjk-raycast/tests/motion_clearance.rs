@@ -136,9 +136,10 @@ fn edges_of_time() {
     let floor = HalfSpace::new(DVec2::Y, -5.0).expect("a direction");
     assert_eq!(floor.motion_clearance(&ball, motion, MotionClearanceOptions::new()), error("max_time"));
     // Whatever is left, there is a bracket.
-    for count in [0, 1, 2, 5, 9] {
+    let truth = clearance(&ball, motion, square, REST, until(1.0)).distance;
+    for count in [0, 1, 2, 5, 9, 16] {
         let least = clearance(&ball, motion, square, REST, until(1.0).with_max_iterations(count));
-        assert!(least.lower <= 1.5 && 1.5 <= least.upper + 1e-12, "{count}: {least:?}");
+        assert!(least.lower <= truth && truth <= least.upper + 1e-12, "{count}: {least:?}");
     }
     for tolerance in [-1.0, 0.0, 1e-12, 1e-3, 1.0, 1e9] {
         let least = clearance(&ball, motion, square, REST, until(0.5).with_tolerance(tolerance));
@@ -366,4 +367,29 @@ fn observers_see_the_search_come_to_its_end() {
             assert!(seen.iter().all(|(_, gap)| *gap < f64::INFINITY), "{case}: {least:?}");
         }
     }
+}
+
+/// The times examined are about ten for a minimum, and few for its proof, whatever the tolerance.
+#[test]
+fn a_minimum_and_its_proof_take_few_looks() {
+    let mut random = Random(9);
+    let (mut counts, mut narrow) = (Vec::new(), Vec::new());
+    while counts.len() < 60 {
+        let pair = pair::<DVec3>(&mut random, 1.0, 1.0);
+        let [a, b] = pair.shapes();
+        let mut looks = |tolerance| {
+            let (options, mut count) = (until(pair.end).with_tolerance(tolerance), 0);
+            let ask = gjk_raycast::motion_clearance_with;
+            let least = ask(a, pair.motions[0], b, pair.motions[1], options, |_| count += 1).expect("finite");
+            (least.lower > 0.0).then_some(count)
+        };
+        if let (Some(count), Some(more)) = (looks(1e-6), looks(1e-12)) {
+            counts.push(count);
+            narrow.push(more);
+        }
+    }
+    counts.sort_unstable();
+    narrow.sort_unstable();
+    assert!(counts[30] <= 14 && counts[54] <= 28, "{counts:?}");
+    assert!(narrow[30] <= 20 && narrow[54] <= 40, "{narrow:?}");
 }

@@ -133,18 +133,6 @@ pub struct MotionIterate<V: Vector> {
     pub upper: V::Scalar,
 }
 
-/// The target distance that falls, in a search for the [least distance](super::falling).
-#[derive(Clone, Copy)]
-pub(super) struct Falling<V: Vector> {
-    /// The target. Up to the time that the search has come to, the bodies are proved to be farther apart.
-    pub(super) target: V::Scalar,
-    /// By how much the target falls where the bodies are not known to be any nearer than before.
-    pub(super) slack: V::Scalar,
-    /// [`Search::fall_on`] and [`Search::farthest`], which a search for a first contact does without.
-    pub(super) go_on: fn(&mut Search<'_, V>),
-    pub(super) farthest: fn(&Search<'_, V>, V::Scalar) -> V::Scalar,
-}
-
 /// The state of the search. Up to the time of [`near`](Self::near) the bodies are proved to be apart.
 pub(super) struct Search<'p, V: Vector> {
     pub(super) bodies: &'p mut dyn Approach<V>,
@@ -162,8 +150,6 @@ pub(super) struct Search<'p, V: Vector> {
     pub(super) acceleration: V::Scalar,
     /// A later time at which they are apart. It is not proved that they are so in between.
     pub(super) ahead: Option<Instant<V>>,
-    /// The bound `M` with which it is not.
-    pub(super) refuted: Option<V::Scalar>,
     /// The earliest time known at which they are not certainly apart.
     pub(super) beyond: Option<Instant<V>>,
     /// The instant that was the earliest of these before.
@@ -176,15 +162,11 @@ pub(super) struct Search<'p, V: Vector> {
     way: V::Scalar,
     pub(super) slow: u8,
     pub(super) looks: usize,
-    /// The target distance that falls, if the least distance is looked for. All distances are measured from it.
-    pub(super) falling: Option<Falling<V>>,
-    /// The instant at which the bodies are nearest, as far as such a search knows, with distances from contact.
-    pub(super) least: Instant<V>,
 }
 
 /// Whether sums and products of a few lengths as large as this neither overflow nor are subnormal. About other lengths
 /// the search proves nothing.
-fn is_in_range<S: Scalar>(measure: S) -> bool {
+pub(super) fn is_in_range<S: Scalar>(measure: S) -> bool {
     is_comfortable(measure) && (measure * S::from_f64(65536.0)).is_finite()
 }
 
@@ -258,7 +240,6 @@ impl<'p, V: Vector> Search<'p, V> {
             before: Instant { time: -V::Scalar::ONE, ..near },
             near,
             ahead: None,
-            refuted: None,
             beyond: None,
             farther: None,
             upper: infinity,
@@ -266,8 +247,6 @@ impl<'p, V: Vector> Search<'p, V> {
             way: infinity,
             slow: 0,
             looks: 1,
-            falling: None,
-            least: near,
         };
         search.show(&near);
         Ok(search)
@@ -287,10 +266,6 @@ impl<'p, V: Vector> Search<'p, V> {
             {
                 self.near.time = rest[1];
                 return MotionEnd::Miss(axis);
-            }
-            if let Some(falling) = self.falling {
-                (falling.go_on)(self);
-                continue;
             }
             let time = if self.near.distance <= self.closest() { None } else { self.next_time() };
             let Some(time) = time else {
@@ -368,9 +343,8 @@ impl<'p, V: Vector> Search<'p, V> {
     /// time is remembered.
     pub(super) fn advance_to(&mut self, there: &Instant<V>) -> bool {
         let proof = acceleration_if_free(&*self.bodies, &self.near, there, &self.base);
-        let Some(acceleration) = proof.ok().filter(|_| self.stay_in_contact(there)) else {
+        let Some(acceleration) = proof.filter(|_| self.stay_in_contact(there)) else {
             self.ahead = Some(*there);
-            self.refuted = proof.err();
             return false;
         };
         (self.before, self.near) = (self.near, *there);
@@ -421,8 +395,7 @@ impl<'p, V: Vector> Search<'p, V> {
     pub(super) fn glance(&mut self, time: V::Scalar) -> Instant<V> {
         let limits = Limits::new(self.enough_at(time), Scalar::ZERO);
         let Instant { distance, error, .. } = self.near;
-        let is_near = self.falling.is_none()
-            && distance * distance < error * self.bodies.size() * Scalar::from_f64(NEAR_IN_MOTION);
+        let is_near = distance * distance < error * self.bodies.size() * Scalar::from_f64(NEAR_IN_MOTION);
         if is_near || self.slow > IDLE_LOOKS {
             self.beyond = self.beyond.filter(|beyond| beyond.is_close);
             return self.look(time, limits);
@@ -463,11 +436,10 @@ impl<'p, V: Vector> Search<'p, V> {
 
     pub(super) fn show(&mut self, there: &Instant<V>) {
         let lower = self.lower();
-        let target = self.falling.map_or(V::Scalar::ZERO, |falling| falling.target);
         (self.observer)(MotionIterate {
             iteration: self.looks - 1,
             time: there.time,
-            gap: there.gap + target,
+            gap: there.gap,
             normal: there.normal,
             lower,
             upper: self.upper,

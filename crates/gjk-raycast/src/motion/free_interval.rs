@@ -40,13 +40,13 @@ const ROUNDING: f64 = 64.0;
 
 /// Whether the signed distance of the bodies certainly stays above a level between two times at which it does so by the
 /// given gaps. At level 0 this means that they are apart. The answer is the bound `M` along the plane that turns from the
-/// one normal to the other, whichever plane is the proof; an error if there is none.
+/// one normal to the other, whichever plane is the proof; `None` if there is none.
 pub(super) fn acceleration_if_free<V: Vector>(
     bodies: &dyn Approach<V>,
     from: &Instant<V>,
     to: &Instant<V>,
     base: &Base<V::Scalar>,
-) -> Result<V::Scalar, V::Scalar> {
+) -> Option<V::Scalar> {
     let times = [from.time, to.time];
     let most = |normals: [V; 2]| bodies.acceleration_along(TurningPlane { from: normals[0], to: normals[1] }, times);
     let turning = most([from.normal, to.normal]);
@@ -56,11 +56,11 @@ pub(super) fn acceleration_if_free<V: Vector>(
         bent += V::Scalar::from_f64(-2.0) * base.level * rate.length_squared();
     }
     if keeps_apart([from.gap, to.gap], bent, times) {
-        return Ok(turning);
+        return Some(turning);
     }
     // If the two planes are one, there is no other to try.
     if from.normal == to.normal {
-        return Err(turning);
+        return None;
     }
     let gap_along = |time, normal| {
         let (level, error) = bodies.level(time, normal);
@@ -68,7 +68,7 @@ pub(super) fn acceleration_if_free<V: Vector>(
     };
     let is_free = keeps_apart([gap_along(from.time, to.normal), to.gap], most([to.normal; 2]), times)
         || keeps_apart([from.gap, gap_along(to.time, from.normal)], most([from.normal; 2]), times);
-    if is_free { Ok(turning) } else { Err(turning) }
+    is_free.then_some(turning)
 }
 
 /// Whether planes that separate the bodies by these gaps at the ends of an interval separate them in between too, given
@@ -78,18 +78,31 @@ fn keeps_apart<S: Scalar>(gaps: [S; 2], most: S, times: [S; 2]) -> bool {
         return false;
     }
     let duration = times[1] - times[0];
-    let [less, more] = if gaps[0] < gaps[1] { gaps } else { [gaps[1], gaps[0]] };
-    // The square of the sum of the roots. Roots are taken only of ratios: the root of a length would have other digits
-    // in another unit, since the root of an odd power of two is no power of two.
-    let squared = less + more + S::from_f64(2.0) * more * (less / more).sqrt();
     let half = S::from_f64(0.5 + 0.5 * ROUNDING * S::EPSILON.as_f64());
     // If a number is NaN, there is no proof.
-    duration * duration * most * half < squared
+    duration * duration * most * half < square_of_roots(gaps)
+}
+
+/// The square of the sum of the roots of two lengths. Roots are taken only of ratios: the root of a length would have
+/// other digits in another unit, since the root of an odd power of two is no power of two.
+pub(super) fn square_of_roots<S: Scalar>(lengths: [S; 2]) -> S {
+    let [less, more] = if lengths[0] < lengths[1] { lengths } else { [lengths[1], lengths[0]] };
+    less + more + S::from_f64(2.0) * more * (less / more).sqrt()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::keeps_apart;
+    use super::{keeps_apart, square_of_roots};
+
+    #[test]
+    fn the_square_of_the_sum_of_roots_has_the_same_digits_in_every_unit() {
+        assert_eq!(square_of_roots([4.0, 9.0]), 25.0);
+        assert_eq!(square_of_roots([9.0, 4.0]), 25.0);
+        for (a, b) in [(0.3, 0.7), (2.0, 1e-9), (5.0, 5.0)] {
+            assert_eq!(square_of_roots([a * 2.0, b * 2.0]), 2.0 * square_of_roots([a, b]));
+        }
+        assert!(square_of_roots([f64::NAN, 1.0]).is_nan());
+    }
 
     /// With a bound `M` on the second derivative, gaps of `M/8` at the ends of an interval of length one may close in
     /// its middle: no less is a proof.

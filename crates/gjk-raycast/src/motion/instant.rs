@@ -4,6 +4,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::bent_plane::BentPlane;
 use super::trajectory::TurningPlane;
 use crate::Distance;
 use crate::unit::length_bound;
@@ -140,8 +141,9 @@ pub(super) trait Approach<V: Vector> {
     /// Measures all distances from `target` on, instead of from contact. [`Instant`]s that are known are not changed.
     fn aim(&mut self, target: V::Scalar);
 
-    /// The distance of the bodies at a time and their closest points, with all that is certain of it.
-    fn distance(&self, time: V::Scalar) -> Distance<V>;
+    /// The distance of the bodies at a time and their closest points, with all that is certain of it. The first guess
+    /// of the normal may be given.
+    fn distance(&self, time: V::Scalar, axis: Option<V>) -> Distance<V>;
 
     /// A bound on the size of both bodies together.
     fn size(&self) -> V::Scalar;
@@ -162,6 +164,14 @@ pub(super) trait Approach<V: Vector> {
     /// An upper bound of the second derivative, throughout an interval, of the distance of any point of `a` from any
     /// point of `b` along a normal that changes at a constant rate.
     fn acceleration_along(&self, plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar;
+
+    /// `G` and `J` of a [bent plane](super::bent_plane); `None` if they are not known.
+    fn leaning_level(&self, _plane: &BentPlane<V>) -> Option<[V::Scalar; 2]> {
+        None
+    }
+
+    /// The sum of the radii of the cores and the target distance.
+    fn reach(&self) -> V::Scalar;
 
     /// The direction from `b` to `a`, at the time when they are closest, of balls around the bodies that move at
     /// constant velocities, if these certainly stay apart throughout an interval. The interval may be infinite.

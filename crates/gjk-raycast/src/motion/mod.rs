@@ -1,14 +1,15 @@
 //! Motion: the first contact of bodies that turn, and motions of any kind.
 
+mod bent_plane;
 mod box_look;
 mod chain_motion;
 mod clearance;
-mod falling;
 mod first_contact;
 mod free_interval;
 mod from_contact;
 mod in_contact;
 mod instant;
+mod least;
 mod motion_cast;
 mod moving_body;
 mod moving_pair;

@@ -3,12 +3,13 @@
 use convex_support::{AngularVelocity, BoundingSphere, Core, CoreKind, Matrix, Parallelotope, Scalar, Spin, Vector};
 use num_traits::Float;
 
+use super::bent_plane::BentPlane;
 use super::placed::Moved;
 use super::rigid_motion::{SpinOf, turn_error};
 use super::trajectory::{MovingBall, RigidMotion, Trajectory, TurningPlane};
 use crate::double::{LEAST, Vec3, array, cross, dot, vector};
 use crate::shape::Shape;
-use crate::unit::length_bound;
+use crate::unit::{is_moderate, length_bound};
 
 /// If the cosine of the angle between two edges is more than this, a parallelotope does not count as a box.
 const NOT_A_BOX: f64 = 1e-6;
@@ -50,6 +51,18 @@ struct Turning<V: Vector> {
     lever: V::Scalar,
     /// The greatest distance of the core's points from the axis.
     reach: V::Scalar,
+}
+
+/// A body's part of the second and third derivative of its points' heights over a [bent plane](super::bent_plane).
+pub(super) struct Bend<V: Vector> {
+    /// `ω × (ω × n − 2ṅ)`: its product with the vector to a point from the centre of the rotation is the part of
+    /// `2ṅ·ẋ + n·ẍ` that the rotation makes.
+    pub(super) leaning: V,
+    pub(super) velocity: V,
+    /// The vector from the centre of the rotation to the body's origin, at time 0.
+    pub(super) arm: V,
+    /// A bound on the third derivative, for all points of the core, but for the part of the velocity.
+    pub(super) jerk: V::Scalar,
 }
 
 /// Where a body is at a time. The body is turned about its own origin, which is moved.
@@ -120,6 +133,29 @@ impl<'s, V: Vector> MovingBody<'s, V> {
             }
             Course::Other => self.motion.acceleration_along(self.ball(), plane, interval),
         }
+    }
+
+    /// How the body's points bend away from a plane; `None` if the motion is not rigid.
+    ///
+    /// With `y` the vector to a point from the centre and `W` for `ω×`, the velocity is `v + Wy`, and the further
+    /// derivatives are `W²y` and `W³y`. Across the axis `y` is no longer than the reach.
+    pub(super) fn bend(&self, plane: &BentPlane<V>) -> Option<Bend<V>> {
+        let rest = Bend { leaning: V::ZERO, velocity: V::ZERO, arm: V::ZERO, jerk: V::Scalar::ZERO };
+        let Rigid { motion, turning, .. } = match &self.course {
+            Course::Rest => return Some(rest),
+            Course::Rigid(rigid) => rigid,
+            Course::Other => return None,
+        };
+        let moving = Bend { velocity: motion.velocity, ..rest };
+        let Some(Turning { arm, reach, .. }) = turning else { return Some(moving) };
+        let (w, three) = (motion.rate(), V::Scalar::from_f64(3.0));
+        // A product that underflows is no bound.
+        if !is_moderate(w * w) {
+            return None;
+        }
+        let leaning = motion.turning(motion.turning(plane.normal) - plane.rate - plane.rate);
+        let slower = three * (plane.bend.norm() + plane.fastest * w) + plane.longest * (w * w);
+        Some(Bend { leaning, arm: arm.unwrap_or(V::ZERO), jerk: *reach * w * slower, ..moving })
     }
 
     /// The body's part of `E(m)`, the bound of [`in_contact`](super::in_contact) along a unit vector in an interval:

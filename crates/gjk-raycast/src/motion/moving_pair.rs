@@ -6,6 +6,7 @@ use convex_support::numerics::range::is_comfortable;
 use convex_support::{Core, Hint, Parallelotope, Scalar, Vector, compiled_table};
 use num_traits::Float;
 
+use super::bent_plane::BentPlane;
 use super::first_contact::Begin;
 use super::instant::{Approach, Instant, Limits};
 use super::moving_body::MovingBody;
@@ -216,10 +217,10 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
 
     #[cold]
     #[inline(never)]
-    fn distance(&self, time: V::Scalar) -> Distance<V> {
+    fn distance(&self, time: V::Scalar, axis: Option<V>) -> Distance<V> {
         let placed = self.placed(time);
         let rare = Rare(self.rare.map(|rare| rare.in_distances));
-        let answer = distance_of_any(&placed.a, &placed.b, DistanceOptions { rare, ..DistanceOptions::lean() });
+        let answer = distance_of_any(&placed.a, &placed.b, DistanceOptions { rare, axis, ..DistanceOptions::lean() });
         self.count(answer.iterations);
         let [point_a, point_b] = [answer.point_a, answer.point_b].map(|point| point + placed.place);
         Distance { point_a, point_b, ..answer }
@@ -267,6 +268,14 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
         self.a.acceleration_along(plane, interval) + self.b.acceleration_along(opposite, interval)
     }
 
+    fn leaning_level(&self, plane: &BentPlane<V>) -> Option<[V::Scalar; 2]> {
+        self.leaning(plane)
+    }
+
+    fn reach(&self) -> V::Scalar {
+        self.a.core.radius + self.b.core.radius
+    }
+
     fn stays_far_apart(&self, interval: [V::Scalar; 2]) -> Option<V> {
         let a = self.a.moving_ball(interval);
         let b = self.b.moving_ball(interval);
@@ -303,6 +312,6 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
     /// This is not the point of `b` that is deepest in `a`: if a small body has to leave through a large one, that
     /// point is far behind the small body.
     fn common_point(&self, there: &Instant<V>) -> V {
-        self.distance(there.time).point_b
+        self.distance(there.time, None).point_b
     }
 }

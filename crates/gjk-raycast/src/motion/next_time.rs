@@ -10,8 +10,6 @@ use super::trajectory::TurningPlane;
 
 /// The next interval is this part of the longest one that can be expected to be proved.
 const CAUTION: f64 = 0.9;
-/// If an interval was too long to be proved, the next one is no longer than this part of it, if the bound for it is known.
-const SHORTER: f64 = 0.8;
 /// The part of the third-order change in a step that the step leaves undone.
 const LEFT: f64 = 0.05;
 /// Steps of Newton's method from the root of a parabola to that of a cubic.
@@ -30,9 +28,7 @@ impl<V: Vector> Search<'_, V> {
         let end = self.options.max_time.min(self.upper);
         let m = self.acceleration.max(Scalar::ZERO) * from_f64(0.5);
         let is_within_reach = closing > (m * gap).sqrt();
-        let step = if let Some(falling) = &self.falling {
-            (falling.farthest)(self, m)
-        } else if is_within_reach {
+        let step = if is_within_reach {
             self.newton(distance - error * from_f64(AIM))
         } else {
             (from_f64(2.0) * (gap / m).sqrt() - closing / m) * from_f64(CAUTION)
@@ -40,8 +36,7 @@ impl<V: Vector> Search<'_, V> {
         let next = time + step;
         if let Some(ahead) = self.ahead {
             // The interval up to there was too long to be proved.
-            let part = if self.falling.is_some() { SHORTER } else { 0.5 };
-            let nearer = time + (ahead.time - time) * from_f64(part);
+            let nearer = time + (ahead.time - time) * from_f64(0.5);
             return Some(if next < nearer { next } else { nearer }).filter(|&next| next > time && next < ahead.time);
         }
         if let Some(beyond) = self.beyond {

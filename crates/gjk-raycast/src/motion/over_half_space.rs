@@ -206,7 +206,7 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
         self.body.core.radius = self.body.shape.core().radius + target;
     }
 
-    fn distance(&self, time: V::Scalar) -> Distance<V> {
+    fn distance(&self, time: V::Scalar, _: Option<V>) -> Distance<V> {
         let (height, core_point) = self.lowest(time);
         let point = core_point - self.plane.unit * self.body.core.radius;
         Lowest { height, point }.distance(self.plane.unit)
@@ -253,6 +253,10 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
     fn acceleration_along(&self, _plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar {
         let normal = self.plane.normal();
         self.plane.per_length(self.body.acceleration_along(TurningPlane { from: normal, to: normal }, interval))
+    }
+
+    fn reach(&self) -> V::Scalar {
+        self.body.core.radius
     }
 
     /// The ball is lowest at one of the ends.

@@ -129,9 +129,14 @@ impl<V: Vector> RigidMotion<V> {
         (rate, off + ball.radius)
     }
 
+    /// `|ω|`.
+    pub(super) fn rate(&self) -> V::Scalar {
+        axial::vector::<V>(self.angular_velocity).norm()
+    }
+
     /// `ω × v`.
     #[inline(always)]
-    fn turning(&self, v: V) -> V {
+    pub(super) fn turning(&self, v: V) -> V {
         axial::turning(axial::vector(self.angular_velocity), v)
     }
 }
