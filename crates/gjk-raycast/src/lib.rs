@@ -188,8 +188,8 @@ pub use convex_support;
 pub use convex_support::{MotionGradient, MotionHessian};
 
 pub use certificate::{
-    Certificate, WeightedSupport, distance_certificate, intersection_certificate, linear_cast_certificate,
-    ray_cast_certificate,
+    Certificate, WeightedSupport, distance_certificate, growth_distance_certificate, intersection_certificate,
+    linear_cast_certificate, ray_cast_certificate,
 };
 pub use contact::{Contact, ContactPoint, contact, contact_after};
 pub use derivative::{

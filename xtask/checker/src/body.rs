@@ -77,6 +77,36 @@ impl Set {
     }
 }
 
+impl Set {
+    /// A bound on how far its points are from one.
+    pub(crate) fn reach_from(&self, center: &Vector) -> Interval {
+        let farthest = |i: usize| {
+            let along = |sign: f64| {
+                let mut axis = Vector::zero();
+                axis.0[i] = Interval::from(sign);
+                &self.support(&axis).1 - &axis.dot(center)
+            };
+            along(1.0).max(&along(-1.0)).squared()
+        };
+        let [x, y, z] = std::array::from_fn(farthest);
+        (&(&x + &y) + &z).root().greatest()
+    }
+
+    /// Points whose hull the set is, if it is one of few.
+    pub(crate) fn corners(&self) -> Option<Vec<Vector>> {
+        match self {
+            Self::Points(points) => Some(points.clone()),
+            Self::Ball => None,
+            Self::Image(of, rows, at) => Some(of.corners()?.iter().map(|point| apply(rows, point).plus(at)).collect()),
+            Self::Sum(of) => of.iter().try_fold(vec![Vector::zero()], |sums, part| {
+                let corners = part.corners()?;
+                Some(sums.iter().flat_map(|sum| corners.iter().map(|corner| sum.plus(corner))).collect())
+            }),
+            Self::Hull(of) => of.iter().map(Self::corners).collect::<Option<Vec<_>>>().map(|parts| parts.concat()),
+        }
+    }
+}
+
 /// A bound on how far a map stretches a vector: that of Gershgorin on the largest eigenvalue of `M·Mᵀ`, which is 1 for
 /// a rotation.
 fn stretch(rows: &[Vector; 3]) -> Interval {

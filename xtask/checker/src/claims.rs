@@ -1,6 +1,6 @@
 //! What the fields of an answer claim, and by what each claim is checked.
 //!
-//! The tables [`claims`] and [`crate::free`]'s name every field that an answer may have. An answer is proved if each of
+//! The tables [`claims`], and those of [`path`], [`joint_box`] and [`crate::clearance`], name every field that an answer may have. An answer is proved if each of
 //! its fields is: one that is not in the table, or that no certificate proves, leaves the answer without a proof, and is
 //! named. So does a field of the question that is not read ([`crate::question::EVERY`], and the shapes of the
 //! [`crate::reader`]).
@@ -8,10 +8,11 @@
 use serde_json::Value;
 
 use crate::certificate::{Bounds, Certificate};
-use crate::free::{self, Parts};
+use crate::free::Parts;
 use crate::interval::{Interval, Vector};
 use crate::question::{Kind, Question};
 use crate::reader::{Reader, Unread, field, only};
+use crate::{growth, joint_box, motion, path};
 
 /// What became of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,6 +89,15 @@ fn claims(kind: Kind) -> &'static [(&'static str, Check)] {
             ("status", status),
             ("iterations", work),
         ],
+        Kind::Growth => &[
+            ("scale", growth::scale),
+            ("point", growth::point),
+            ("normal", growth::normal),
+            ("lower", lower),
+            ("upper", upper),
+            ("status", status),
+            ("iterations", work),
+        ],
     }
 }
 
@@ -98,8 +108,11 @@ fn claims(kind: Kind) -> &'static [(&'static str, Check)] {
 pub fn judge(line: &Value, reader: &Reader<'_>) -> Result<Proof, Unread> {
     let answer = field(line, "answer")?;
     let certificate = field(line, "certificate")?;
-    if matches!(field(line, "query")?.as_str(), Some("path" | "joint_box")) {
-        return free::judge(line, answer, certificate, reader);
+    match field(line, "query")?.as_str() {
+        Some("path") => return path::judge(line, answer, certificate, reader),
+        Some("joint_box") => return joint_box::judge(line, answer, certificate, reader),
+        Some("motion_clearance") => return motion::judge(line, answer, certificate, reader),
+        _ => {}
     }
     let question = Question::read(line, reader)?;
     only(certificate, "the certificate", &[&["plane", "points"]])?;
@@ -110,6 +123,7 @@ pub fn judge(line: &Value, reader: &Reader<'_>) -> Result<Proof, Unread> {
     let required: &[&str] = match kind {
         Kind::Distance => &["distance"],
         Kind::Intersect => &["overlap"],
+        Kind::Growth => &["scale"],
         _ if case.is_hit == Some(true) => &["hit", kind.scalar()],
         _ => &["hit"],
     };
@@ -138,7 +152,7 @@ pub(crate) fn of_fields<C>(
 }
 
 /// Whether something is so that is proved to be so, or not to be so.
-fn decided(is_so: bool, is_not: bool, why: &str) -> Finding {
+pub(crate) fn decided(is_so: bool, is_not: bool, why: &str) -> Finding {
     match (is_so, is_not) {
         (_, true) => Ok(false),
         (true, _) => Ok(true),
@@ -157,15 +171,15 @@ pub(crate) fn flag(value: &Value) -> Result<bool, Unread> {
 
 /// How many units of rounding, of the largest number that an answer comes by, are allowed for where a vector is
 /// claimed.
-const UNITS: f64 = 64.0;
+pub(crate) const UNITS: f64 = 64.0;
 
 /// An answer and what is proved of it.
-struct Case<'c> {
-    question: Question,
+pub(crate) struct Case<'c> {
+    pub(crate) question: Question,
     answer: &'c Value,
-    reader: &'c Reader<'c>,
+    pub(crate) reader: &'c Reader<'c>,
     plane: Option<Vector>,
-    proved: Bounds,
+    pub(crate) proved: Bounds,
     /// What is claimed of the scalar: its bracket; where an end is missing, the number itself, give or take what the
     /// query allows.
     claimed: Option<Bounds>,
@@ -214,24 +228,24 @@ impl<'c> Case<'c> {
     }
 
     /// What is claimed of the scalar; an error where there is none to be claimed.
-    fn claimed(&self) -> Result<&Bounds, Unread> {
+    pub(crate) fn claimed(&self) -> Result<&Bounds, Unread> {
         if self.is_hit == Some(false) {
             return Err("a miss has none".to_owned());
         }
         self.claimed.as_ref().ok_or_else(|| format!("the field \"{}\" is missing", self.question.kind.scalar()))
     }
 
-    fn value(&self) -> Result<Interval, Unread> {
+    pub(crate) fn value(&self) -> Result<Interval, Unread> {
         self.reader.number(field(self.answer, self.question.kind.scalar())?).map(Interval::from)
     }
 
     /// The unit vector that a field claims.
-    fn unit(&self, value: &Value) -> Result<Vector, Unread> {
+    pub(crate) fn unit(&self, value: &Value) -> Result<Vector, Unread> {
         unit(value, self.reader)
     }
 
     /// The claimed normal, if one is.
-    fn normal(&self) -> Option<Vector> {
+    pub(crate) fn normal(&self) -> Option<Vector> {
         self.answer.get("normal").and_then(|normal| self.unit(normal).ok())
     }
 
@@ -266,7 +280,7 @@ pub(crate) fn unit(value: &Value, reader: &Reader<'_>) -> Result<Vector, Unread>
 }
 
 /// The scalar: it is in its bracket, and an end that is not given is proved.
-fn value(case: &Case<'_>, _: &Value) -> Finding {
+pub(crate) fn value(case: &Case<'_>, _: &Value) -> Finding {
     let (value, claimed) = (case.value()?, case.claimed()?);
     if value.is_less_than(&claimed.lower) || claimed.upper.is_less_than(&value) {
         return Err("it is not within its bracket".to_owned());
@@ -461,9 +475,17 @@ fn status(case: &Case<'_>, value: &Value) -> Finding {
     if ["lower", "upper"].iter().any(|name| case.answer.get(name).is_none()) {
         return Err("what has converged has both bounds".to_owned());
     }
-    let width = &claimed.upper - &claimed.lower;
-    let (width, most) = if question.kind.is_cast() {
-        let size = question.magnitude(&claimed.upper.absolute());
+    let (one, is_growth) = (Interval::from(1.0), question.kind == Kind::Growth);
+    let width = match is_growth {
+        // Of the λ at which the line leaves.
+        true => &one.over(&claimed.lower) - &one.over(&claimed.upper),
+        false => &claimed.upper - &claimed.lower,
+    };
+    let (width, most) = if is_growth && claimed.upper.is_zero() {
+        (Interval::zero(), Interval::zero())
+    } else if question.kind.is_cast() || is_growth {
+        let until = if is_growth { one.over(&claimed.lower) } else { claimed.upper.absolute() };
+        let size = question.magnitude(&until);
         // Along the plane's normal, in lengths. Where the ray grazes what is curved, rounding moves the hit by its root.
         let approach = case.plane.as_ref().and_then(Vector::unit).map(|n| n.dot(&question.direction).absolute());
         let width = &width * &approach.unwrap_or_else(|| question.direction.length());

@@ -7,9 +7,15 @@
 mod body;
 mod certificate;
 mod claims;
+mod clearance;
 mod free;
+mod growth;
 mod interval;
+mod joint_box;
+mod motion;
+mod moving;
 mod near;
+mod path;
 mod planes;
 mod question;
 mod reader;

@@ -2,12 +2,12 @@
 //!
 //! All is about a set `C`, the target of a ray or `A − B ⊕ B(target distance)`, and the points `x(λ) = source +
 //! λ·direction` from the beginning of the ray on; for `distance` and `intersect`, whose `x` is zero, the direction is
-//! zero too. A plane across `n` has `C` behind it, `n·y ≤ h(n)`: that bounds distance, or the first λ with `x(λ)` in `C`,
+//! zero too. (Of `growth_distance` the last λ counts: [`crate::growth`].) A plane across `n` has `C` behind it, `n·y ≤ h(n)`: that bounds distance, or the first λ with `x(λ)` in `C`,
 //! from below. Points of `C` bound it from above.
 
 use serde_json::Value;
 
-use crate::body::{Body, difference};
+use crate::body::{Body, Set, difference};
 use crate::certificate::{Bounds, Certificate};
 use crate::interval::{Interval, Vector};
 use crate::reader::{Reader, Unread, field, only};
@@ -19,6 +19,7 @@ pub(crate) enum Kind {
     Intersect,
     RayCast,
     LinearCast,
+    Growth,
 }
 
 /// A query as one set and one ray.
@@ -26,7 +27,7 @@ pub(crate) struct Question {
     pub(crate) kind: Kind,
     /// The target of a ray, or `a` and `b`, each with its velocity.
     pub(crate) bodies: Vec<(Body, Vector)>,
-    set: Body,
+    pub(crate) set: Body,
     /// Where the ray begins.
     source: Vector,
     pub(crate) direction: Vector,
@@ -35,6 +36,8 @@ pub(crate) struct Question {
     /// The end of the ray, which may be infinite.
     pub(crate) end: Interval,
     pub(crate) target_distance: Interval,
+    /// What the bodies grow about, if that is asked.
+    pub(crate) centers: Vec<Vector>,
     /// Whether a start in contact is a hit only where the bodies get deeper.
     pub(crate) is_of_deeper: bool,
     /// Whether planes are told with the set before them, as those between two shapes.
@@ -62,6 +65,14 @@ pub(crate) const EVERY: &[&str] = &[
     "certificate",
 ];
 
+/// How near is too near, where a query may say it.
+pub(crate) fn target_distance(line: &Value, reader: &Reader<'_>) -> Result<Interval, Unread> {
+    match line.get("target_distance").map_or(Ok(0.0), |value| reader.number(value))? {
+        negative if negative < 0.0 => Err("target_distance is negative".to_owned()),
+        distance => Ok(Interval::from(distance)),
+    }
+}
+
 impl Kind {
     /// The kind of a query, and the fields that its question may have beside those of [`EVERY`] one: each is read by
     /// [`Question::read`]. A `gradient` asks for further fields of the answer.
@@ -74,6 +85,7 @@ impl Kind {
             Self::LinearCast,
             &["a", "b", "velocity_a", "velocity_b", "max_time", "target_distance", "start_in_contact", "gradient"],
         ),
+        ("growth_distance", Self::Growth, &["a", "b", "center_a", "center_b"]),
     ];
 
     fn read(line: &Value) -> Result<Self, Unread> {
@@ -90,6 +102,7 @@ impl Kind {
             Self::Distance | Self::Intersect => "distance",
             Self::RayCast => "lambda",
             Self::LinearCast => "time",
+            Self::Growth => "scale",
         }
     }
 
@@ -106,6 +119,8 @@ impl Question {
             |name, default| line.get(name).map_or(Ok(default), |value| reader.number(value).map(Interval::from));
         let velocity = |name| reader.vector_or_zero(line, name);
         let zero = Interval::zero;
+        let centers = ["center_a", "center_b"].into_iter().filter(|_| kind == Kind::Growth);
+        let centers = centers.map(|name| reader.vector(get(name)?)).collect::<Result<Vec<_>, _>>()?;
         let (bodies, first, direction) = if kind == Kind::RayCast {
             let (source, direction) = (reader.vector(get("source")?)?, reader.vector(get("direction")?)?);
             (vec![(reader.body(get("target")?)?, Vector::zero())], source, direction)
@@ -113,16 +128,16 @@ impl Question {
             // `A + t·v_A` and `B + t·v_B` meet where `t·(v_B − v_A)` is in `A − B`.
             let (a, b) = (reader.body(get("a")?)?, reader.body(get("b")?)?);
             let (velocity_a, velocity_b) = (velocity("velocity_a")?, velocity("velocity_b")?);
-            let direction = velocity_b.minus(&velocity_a);
+            let direction = match centers.as_slice() {
+                [center_a, center_b] => center_b.minus(center_a),
+                _ => velocity_b.minus(&velocity_a),
+            };
             (vec![(a, velocity_a), (b, velocity_b)], Vector::zero(), direction)
         };
         // A negative beginning is taken for zero.
         let begin = number("min_lambda", zero())?.max(&zero());
         let end = number(if kind == Kind::RayCast { "max_lambda" } else { "max_time" }, Interval::infinity())?;
-        let target_distance = number("target_distance", zero())?;
-        if !target_distance.is_not_negative() {
-            return Err("target_distance is negative".to_owned());
-        }
+        let target_distance = target_distance(line, reader)?;
         let is_of_deeper = match line.get("start_in_contact").map(Value::as_str) {
             None | Some(Some("report")) => false,
             Some(Some("if_deeper")) => true,
@@ -133,8 +148,13 @@ impl Question {
             _ => bodies[0].0.clone(),
         };
         set.radius = &set.radius + &target_distance;
+        if kind == Kind::Growth {
+            // `(A − c_A) − (B − c_B)`.
+            set.core = Set::Sum(vec![set.core, Set::Points(vec![direction.clone()])]);
+        }
         Ok(Self {
             kind,
+            centers,
             is_pair: bodies.len() == 2,
             bodies,
             set,
@@ -161,6 +181,7 @@ impl Question {
             begin: zero(),
             end: Interval::infinity(),
             target_distance: zero(),
+            centers: Vec::new(),
             is_of_deeper: false,
             is_pair: true,
             rounding: reader.rounding(),
@@ -168,7 +189,7 @@ impl Question {
         }
     }
 
-    pub(crate) fn core(&self) -> &crate::body::Set {
+    pub(crate) fn core(&self) -> &Set {
         &self.set.core
     }
 
@@ -184,11 +205,16 @@ impl Question {
         bodies.fold(&ray + &self.target_distance, |sum, part| &sum + &part)
     }
 
+    /// How far the set reaches along a normal, times the length of that.
+    pub(crate) fn reach(&self, normal: &Vector) -> Interval {
+        &self.set.core.support(normal).1 + &(&self.set.radius * &normal.length())
+    }
+
     /// How far the beginning is before the plane across a normal as it is told, at least, times the length of the
     /// normal, and the normal out of the set.
     pub(crate) fn ahead(&self, told: &Vector) -> (Interval, Vector) {
         let normal = if self.is_pair { told.times(&Interval::from(-1.0)) } else { told.clone() };
-        let reach = &self.set.core.support(&normal).1 + &(&self.set.radius * &normal.length());
+        let reach = self.reach(&normal);
         (&normal.dot(&self.source) - &reach, normal)
     }
 
@@ -208,6 +234,9 @@ impl Question {
 
     /// What a certificate proves.
     pub(crate) fn proved(&self, certificate: &Certificate) -> Bounds {
+        if self.kind == Kind::Growth {
+            return self.proved_of_growth(certificate);
+        }
         let least = if self.kind.is_cast() { self.begin.clone() } else { Interval::zero() };
         let lower = certificate.plane.as_ref().map_or(least, |plane| self.lower(plane));
         Bounds { lower, upper: if self.kind.is_cast() { self.first(certificate) } else { self.gap(certificate) } }
@@ -243,21 +272,26 @@ impl Question {
         (discriminant.is_not_negative() && at.is_not_negative()).then_some(at)
     }
 
-    /// Where the ray pierces a simplex of as many of the points as there are dimensions.
+    /// Where the ray first pierces a simplex.
+    fn entry_of_simplex(&self, certificate: &Certificate) -> Option<Interval> {
+        self.pierced(certificate).reduce(|a, b| a.min(&b))
+    }
+
+    /// Where the ray pierces simplices of as many of the points as there are dimensions.
     ///
     /// The unknowns are the weights `w` and λ of `Σ wᵢ·pᵢ − λ·direction = source`, `Σ wᵢ = 1`.
-    fn entry_of_simplex(&self, certificate: &Certificate) -> Option<Interval> {
+    pub(crate) fn pierced<'c>(&'c self, certificate: &'c Certificate) -> impl Iterator<Item = Interval> + 'c {
         let Certificate { points, dimension, .. } = certificate;
-        let simplices: Vec<Vec<usize>> = match points.len().checked_sub(*dimension)? {
-            0 => vec![(0..points.len()).collect()],
-            _ => (0..points.len()).map(|i| (0..points.len()).filter(|j| *j != i).collect()).collect(),
+        let simplices: Vec<Vec<usize>> = match points.len().checked_sub(*dimension) {
+            None => Vec::new(),
+            Some(0) => vec![(0..points.len()).collect()],
+            Some(_) => (0..points.len()).map(|i| (0..points.len()).filter(|j| *j != i).collect()).collect(),
         };
         let column = self.direction.times(&Interval::from(-1.0));
-        let entry = |simplex: Vec<usize>| {
+        simplices.into_iter().filter_map(move |simplex| {
             let solved = certificate.solve(&simplex, Some(&column), &self.source)?;
             solved.last().filter(|at| at.is_not_negative()).cloned()
-        };
-        simplices.into_iter().filter_map(entry).reduce(|a, b| a.min(&b))
+        })
     }
 
     /// Whether the source is in the ball about the mean of the points, or in their simplex.

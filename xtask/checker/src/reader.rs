@@ -83,7 +83,7 @@ impl Reader<'_> {
     }
 
     /// Notes that something is of a dimension.
-    fn note(&self, dimension: usize, what: &Value) -> Result<(), Unread> {
+    pub(crate) fn note(&self, dimension: usize, what: &Value) -> Result<(), Unread> {
         match self.dimension.get() {
             Some(known) if known != dimension => {
                 Err(format!("{what:.40} is of dimension {dimension}, but what is before it is of dimension {known}"))

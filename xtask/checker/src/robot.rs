@@ -118,6 +118,15 @@ impl Robot {
         (size, turns)
     }
 
+    /// A bound on how fast joints move what is nowhere farther than `reach` from any of their axes.
+    pub(crate) fn speed(&self, rates: &[Interval], reach: &Interval) -> Interval {
+        let of = |(kind, _, value): &(Kind, Vector, usize)| match kind {
+            Kind::Slides => rates[*value].clone(),
+            Kind::Turns => &rates[*value] * reach,
+        };
+        self.joints.iter().filter_map(|joint| joint.moves.as_ref()).map(of).fold(Interval::zero(), |sum, w| &sum + &w)
+    }
+
     /// The joints from the world to a link.
     fn way(&self, link: usize) -> Vec<usize> {
         let mut way = Vec::new();
@@ -233,6 +242,13 @@ impl Robot {
     }
 }
 
+impl Bounds {
+    /// The upper ends of both.
+    pub(crate) fn greatest(&self) -> Self {
+        Self { speed: self.speed.greatest(), acceleration: self.acceleration.greatest() }
+    }
+}
+
 impl Placed {
     /// A direction as the link sees it.
     pub(crate) fn seen(&self, direction: &Vector) -> Vector {
@@ -250,7 +266,7 @@ fn index(object: &Value, name: &str, count: usize) -> Result<Option<usize>, Unre
 }
 
 /// The rotation by an angle about a unit axis `u`, `cos·1 + sin·[u]ₓ + (1 − cos)·u·uᵀ`, by its rows.
-fn turned(axis: &Vector, angle: &Interval) -> [Vector; 3] {
+pub(crate) fn turned(axis: &Vector, angle: &Interval) -> [Vector; 3] {
     let [sine, cosine] = angle.sine_and_cosine();
     let rest = &Interval::from(1.0) - &cosine;
     let Vector([x, y, z]) = axis;

@@ -1,9 +1,9 @@
 //! `growth_distance`.
 
 use convex_support::{Scalar as _, Vector};
-use gjk_raycast::{GrowthError, GrowthOptions, growth_distance};
+use gjk_raycast::{GrowthError, GrowthOptions, growth_distance, growth_distance_certificate};
 
-use super::{Ask, How, Query, Question, status};
+use super::{Ask, How, Query, Question, certificate, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::{Coordinates, Fields};
@@ -49,6 +49,11 @@ impl<V: Space> Question for Growth<V> {
             let kind = if let GrowthError::CenterOutside { .. } = why { Kind::CenterOutside } else { Kind::NonFinite };
             Problem::new(kind, why.to_string())
         })
+    }
+
+    fn certificate(&self, growth: &Self::Solution) -> Option<Answer> {
+        let ([a, b], [center_a, center_b]) = (&self.shapes, self.centers);
+        Some(certificate(growth_distance_certificate(a, center_a, b, center_b, growth)))
     }
 
     /// The derivatives.

@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use gjk_raycast::{BodyPair, FreeBox, JointBoxOutcome, Linkage, Scene};
 
-use super::path::{Surrounded, of_what};
+use super::path::{Surrounded, meeting_of, of_what};
 use super::{Ask, How, Query, Question, meeting, scalar};
 use crate::wire::answer::{Answer, Field, Number};
 use crate::wire::error::{Kind, Problem};
@@ -79,14 +79,7 @@ impl<V: Space> Question for Ever<V> {
 
     fn prove(&self) -> Result<(Self::Solution, Option<Answer>), Problem> {
         let mut free = Vec::new();
-        let show = |FreeBox { bodies, joint_box, normal }: FreeBox<'_, V>| {
-            let intervals = joint_box.iter().map(|ends| ends.map(Number::of).to_vec()).collect();
-            let part = Answer::default()
-                .with("body", Field::Count(bodies[0]))
-                .with("other_body", Field::Count(bodies[1]))
-                .with("box", Field::Rows(intervals));
-            free.push(part.with("plane", Field::vector(normal)));
-        };
+        let show = |part: FreeBox<'_, V>| free.push(free_part(&part, of_pair(Answer::default(), part.bodies)));
         let solution = self
             .robot
             .joint_box_with(self.pair, &self.intervals, self.target_distance, MAX_BOXES, show)
@@ -102,9 +95,7 @@ impl<V: Space> Question for Ever<V> {
     }
 
     fn answer(&self, answer: Self::Solution) -> Result<Answer, Problem> {
-        of_search(answer, |answer, [body, other]| {
-            answer.with("body", Field::Count(body)).with("other_body", Field::Count(other))
-        })
+        of_search(answer, of_pair)
     }
 }
 
@@ -123,11 +114,39 @@ impl<V: Space> Question for EverAmong<V> {
         robot.joint_box_among(scene, intervals, *target_distance, MAX_BOXES).map_err(problem)
     }
 
-    fn answer(&self, answer: Self::Solution) -> Result<Answer, Problem> {
-        of_search(answer, |answer, BodyPair { link, body, met }| {
-            of_what(answer.with("link", Field::Count(link)).with("body", Field::Count(body)), met)
-        })
+    fn prove(&self) -> Result<(Self::Solution, Option<Answer>), Problem> {
+        let Self { robot, scene, intervals, target_distance } = self;
+        let mut free = Vec::new();
+        let show =
+            |part: FreeBox<'_, V, BodyPair>| free.push(free_part(&part, of_bodies(Answer::default(), part.bodies)));
+        let solution =
+            robot.joint_box_among_with(scene, intervals, *target_distance, MAX_BOXES, show).map_err(problem)?;
+        let met = match &solution.outcome {
+            JointBoxOutcome::Meets { values, bodies } => meeting_of(robot, scene, values, *bodies).unwrap_or_default(),
+            _ => Answer::default(),
+        };
+        Ok((solution, Some(met.with("free", Field::Answers(free)))))
     }
+
+    fn answer(&self, answer: Self::Solution) -> Result<Answer, Problem> {
+        of_search(answer, of_bodies)
+    }
+}
+
+/// A part of a proof: a box of joint values, and what separates two bodies in it.
+fn free_part<V: Space, P>(FreeBox { joint_box, normal, .. }: &FreeBox<'_, V, P>, bodies: Answer) -> Answer {
+    let intervals = joint_box.iter().map(|ends| ends.map(Number::of).to_vec()).collect();
+    bodies.with("box", Field::Rows(intervals)).with("plane", Field::vector(*normal))
+}
+
+/// With the names of the bodies of a pair of links.
+fn of_pair(answer: Answer, [body, other]: [usize; 2]) -> Answer {
+    answer.with("body", Field::Count(body)).with("other_body", Field::Count(other))
+}
+
+/// With the names of two bodies.
+fn of_bodies(answer: Answer, BodyPair { link, body, met }: BodyPair) -> Answer {
+    of_what(answer.with("link", Field::Count(link)).with("body", Field::Count(body)), met)
 }
 
 /// What became of a search, with the names of the bodies that meet.

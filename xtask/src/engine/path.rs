@@ -5,16 +5,16 @@ use convex_support::{Scalar as _, Vector};
 #[cfg(not(target_family = "wasm"))]
 use cpu_time::ThreadTime;
 use gjk_raycast::{
-    FreeInterval, Linkage, Met, MotionCastOptions, MotionClearanceOptions, NearestOnPath, PathClearance, PathContact,
-    PathWorkspace, Scene,
+    BodyPair, FreeInterval, Linkage, Met, MotionCastOptions, MotionClearanceOptions, NearestOnPath, PathClearance,
+    PathContact, PathWorkspace, Scene,
 };
 #[cfg(target_family = "wasm")]
 use std::time::Instant as ThreadTime;
 
-use super::motion_clearance::with_points;
+use super::motion_clearance::{free_part, of_met, with_points};
 use super::{Ask, EVERY, How, Precision, Query, Question, meeting, path_picture, scalar, status};
 use crate::mesh::Meshes;
-use crate::wire::answer::{Answer, Field, Number};
+use crate::wire::answer::{Answer, Field};
 use crate::wire::body::{Body, Built, refused, scene_of};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::{Dimension, Fields, Object, Written};
@@ -117,21 +117,18 @@ impl<V: Space> Question for Way<V> {
 
     /// It is watched, so that brackets are those of what is shown.
     fn prove(&self) -> Result<(Self::Solution, Option<Answer>), Problem> {
-        let mut free = Vec::new();
-        let show = |part: FreeInterval<V>| {
-            let FreeInterval { edge, from, to, link, body, met, normals } = part;
-            let answer = Answer::default()
-                .with("edge", Field::Count(edge))
-                .with("times", Field::Numbers([from, to].map(Number::of).to_vec()))
-                .with("link", Field::Count(link))
-                .with("body", Field::Count(body));
-            free.push(of_what(answer, met).with("normals", Field::vectors(normals)));
-        };
-        let mut workspace = PathWorkspace::new();
-        let path = self.robot.path_with(&self.waypoints, &self.scene, self.options, &mut workspace, show);
-        let path = path.map_err(problem)?;
+        let (path, free) = self.watched(self.options)?;
         let met = path.contact().and_then(|(contact, _)| self.met(&contact)).unwrap_or_default();
-        Ok(((path, self.solve()?.1), Some(met.with("free", Field::Answers(free)))))
+        let proof = met.with("free", Field::Answers(free));
+        let clearance = self.solve()?.1;
+        let nearest = clearance.and_then(|clearance| clearance.nearest).map(|nearest| self.certificate_of(&nearest));
+        Ok((
+            (path, clearance),
+            Some(match nearest.transpose()? {
+                Some(nearest) => proof.with("clearance", Field::Answer(nearest)),
+                None => proof,
+            }),
+        ))
     }
 
     /// The same path, not watched.
@@ -187,22 +184,69 @@ fn of_clearance<V: Space>(NearestOnPath { edge, link, body, met, least }: Neares
 }
 
 impl<V: Space> Way<V> {
+    /// The path, and the intervals that prove what is free.
+    fn watched(&self, options: MotionCastOptions<V>) -> Result<(gjk_raycast::Path<V>, Vec<Answer>), Problem> {
+        let mut free = Vec::new();
+        let show = |FreeInterval { edge, from, to, link, body, met, normals }: FreeInterval<V>| {
+            let part = Answer::default().with("edge", Field::Count(edge)).with("link", Field::Count(link));
+            free.push(free_part(of_what(part.with("body", Field::Count(body)), met), [from, to], normals));
+        };
+        let mut workspace = PathWorkspace::new();
+        let path = self.robot.path_with(&self.waypoints, &self.scene, options, &mut workspace, show);
+        Ok((path.map_err(problem)?, free))
+    }
+
+    /// What proves a least distance: that the path is free with its lower bound for a target distance, and points of the
+    /// bodies at its time; of a contact the bracket of its time, and points at the end of that.
+    fn certificate_of(
+        &self,
+        &NearestOnPath { edge, link, body, met, least }: &NearestOnPath<V>,
+    ) -> Result<Answer, Problem> {
+        let zero = V::Scalar::ZERO;
+        let meets = least.upper == zero;
+        let (contact, free) = if meets || least.lower > zero {
+            let (path, free) = self.watched(self.options.with_target_distance(least.lower))?;
+            (path.first.filter(|_| meets).map(|first| first.cast), free)
+        } else {
+            (None, Vec::new())
+        };
+        let at = contact.map_or(least.time, |cast| cast.upper);
+        let points = self.meeting_at((edge, at), BodyPair { link, body, met }).unwrap_or_default();
+        let met = contact.map(|cast| [cast.lower, cast.upper]);
+        Ok(of_met(points, met).with("free", Field::Answers(free)))
+    }
+
     /// What proves that the bodies of a contact meet at the end of its bracket, if it has one. A half-space needs no
     /// proof.
     fn met(&self, &PathContact { edge, link, body, met, cast }: &PathContact<V>) -> Option<Answer> {
+        self.meeting_at((edge, cast.upper), BodyPair { link, body, met })
+    }
+
+    /// The same of any two bodies at a time of an edge.
+    fn meeting_at(&self, (edge, time): (usize, V::Scalar), bodies: BodyPair) -> Option<Answer> {
         // A contact at a waypoint may be one that the next edge has shown.
         let one = V::Scalar::ONE;
-        let (edge, time) = if cast.upper > one { (edge + 1, cast.upper - one) } else { (edge, cast.upper) };
+        let (edge, time) = if time > one { (edge + 1, time - one) } else { (edge, time) };
         let [from, to] = [edge, edge + 1].map(|end| &self.waypoints[end.min(self.waypoints.len() - 1)]);
         let values: Vec<_> = from.iter().zip(to).map(|(&from, &to)| from + (to - from) * time).collect();
-        let placed = |link, body| self.robot.placed(link, body, &values).ok();
-        let a = placed(link, body)?;
-        Some(match met {
-            Met::Obstacle(obstacle) => meeting(&a, self.scene.get(obstacle)?.convex()?),
-            Met::Member { obstacle, member } => meeting(&a, &self.scene.member(obstacle, member)?),
-            Met::Link { link, body } => meeting(&a, &placed(link, body)?),
-        })
+        meeting_of(&self.robot, &self.scene, &values, bodies)
     }
+}
+
+/// What proves how near two bodies are at joint values.
+pub(super) fn meeting_of<V: Space>(
+    robot: &Linkage<Solid<V>>,
+    scene: &Scene<Solid<V>>,
+    values: &[V::Scalar],
+    BodyPair { link, body, met }: BodyPair,
+) -> Option<Answer> {
+    let placed = |link, body| robot.placed(link, body, values).ok();
+    let a = placed(link, body)?;
+    Some(match met {
+        Met::Obstacle(obstacle) => meeting(&a, scene.get(obstacle)?.convex()?),
+        Met::Member { obstacle, member } => meeting(&a, &scene.member(obstacle, member)?),
+        Met::Link { link, body } => meeting(&a, &placed(link, body)?),
+    })
 }
 
 /// With what is met, or not.

@@ -33,6 +33,9 @@ pub struct Choice {
     /// Draw robots' paths and boxes of joint values.
     #[arg(long, requires = "random")]
     robots: bool,
+    /// Draw least distances over motions and paths, growth distances, and boxes of joint values among obstacles.
+    #[arg(long, requires = "random", conflicts_with = "robots")]
+    clearances: bool,
     /// Another seed draws other queries.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -77,7 +80,11 @@ fn prove(choice: &Choice, output: &mut impl Write) -> io::Result<Counts> {
     if let Some(seconds) = choice.random {
         let told = Mutex::new(Vec::new());
         let tell = |line: &str| told.lock().unwrap_or_else(PoisonError::into_inner).push(line.to_owned());
-        let kinds = if choice.robots { random::ROBOTS } else { random::PLANES };
+        let kinds = match choice {
+            Choice { robots: true, .. } => random::ROBOTS,
+            Choice { clearances: true, .. } => random::CLEARANCES,
+            _ => random::PLANES,
+        };
         let tally = random::prove_for(kinds, seconds, choice.seed, tell);
         for line in told.into_inner().unwrap_or_else(PoisonError::into_inner) {
             writeln!(output, "{line}")?;

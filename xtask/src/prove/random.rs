@@ -5,11 +5,11 @@ use std::time::{Duration, Instant};
 
 use checker::Verdict;
 use rayon::prelude::*;
-use serde_json::Value;
+use serde_json::{Value, json};
 use workloads::rng::Rng;
 
 use super::{Counts, judge_line};
-use crate::draw::{self, KINDS};
+use crate::draw::{self, KINDS, with};
 use crate::mesh::Meshes;
 use crate::query::certified;
 
@@ -27,7 +27,9 @@ pub(super) fn prove_for(kinds: &[&str], seconds: u64, seed: u64, told: impl Fn(&
         while Instant::now() < end {
             let query = query(kinds, &mut rng);
             let [kind, precision] = ["query", "precision"].map(|name| query[name].as_str().unwrap_or_default());
-            let mut name = format!("{kind} {precision}");
+            let among = query.get("clearance").map_or("", |_| " clearance");
+            let among = query.get("obstacles").filter(|_| kind == "joint_box").map_or(among, |_| " among");
+            let mut name = format!("{kind}{among} {precision}");
             let Some(line) = certified(query.to_string().as_bytes(), &meshes) else {
                 tally.entry(name).or_default().unanswered += 1;
                 continue;
@@ -56,6 +58,9 @@ pub(super) fn prove_for(kinds: &[&str], seconds: u64, seed: u64, told: impl Fn(&
 pub(super) const PLANES: &[&str] = &["distance", "intersect", "linear_cast", "ray_cast"];
 /// Those whose certificates have many planes.
 pub(super) const ROBOTS: &[&str] = &["path", "joint_box"];
+/// Least distances over motions and paths, growth distances, and boxes of joint values among obstacles: each is drawn
+/// as another kind is, and then changed.
+pub(super) const CLEARANCES: &[&str] = &["growth_distance", "motion_clearance", "path_clearance", "joint_box_among"];
 
 /// A query of one of some kinds that have a certificate: none of a half-space, and none that asks for what no
 /// certificate of ours is made for: derivatives, what happens after a start in contact, a start within the target
@@ -65,16 +70,71 @@ pub(super) fn query(kinds: &[&str], rng: &mut Rng) -> Value {
         let name = kinds[rng.below(kinds.len() as u64) as usize];
         let precision = if rng.below(4) == 0 { "f32" } else { "f64" };
         let dimension = 2 + rng.below(2) as usize;
-        for kind in KINDS.iter().copied().filter(|(known, _)| *known == name) {
+        let drawn_as = match name {
+            "growth_distance" => "distance",
+            "motion_clearance" => "motion_cast",
+            "path_clearance" | "joint_box_among" => "path",
+            other => other,
+        };
+        for kind in KINDS.iter().copied().filter(|(known, _)| *known == drawn_as) {
             let mut query = draw::query(kind, precision, dimension, rng);
             if let Some(fields) = query.as_object_mut() {
                 let _ = fields.remove("gradient");
             }
-            let unread = ["start_in_contact", "target_distance", "min_lambda", "method"];
-            let is_read = query["b"]["type"] != "half_space" && unread.iter().all(|name| query.get(name).is_none());
-            if is_read || ROBOTS.contains(&name) {
-                return query;
+            match name {
+                "growth_distance" if query["b"]["type"] != "half_space" => return growing(query, rng),
+                "growth_distance" => {}
+                "motion_clearance" => {
+                    return without(with(query, "query", name), &["start_in_contact", "target_distance"]);
+                }
+                "path_clearance" => return with(query, "clearance", true),
+                "joint_box_among" => return boxed(query, rng),
+                _ => {
+                    let unread = ["start_in_contact", "target_distance", "min_lambda", "method"];
+                    let is_read =
+                        query["b"]["type"] != "half_space" && unread.iter().all(|name| query.get(name).is_none());
+                    if is_read || ROBOTS.contains(&name) {
+                        return query;
+                    }
+                }
             }
         }
     }
+}
+
+/// A distance as a growth distance about points that are inside: the mean of the farthest points of a shape along some
+/// directions, those of it that are nearest to points far away.
+fn growing(query: Value, rng: &mut Rng) -> Value {
+    let dimension = query["a"]["translation"].as_array().map_or(3, Vec::len);
+    let center = |shape: &Value, rng: &mut Rng| {
+        let mut mean = vec![0.0; dimension];
+        let count = 2 + rng.below(6);
+        for _ in 0..count {
+            let at: Vec<f64> = (0..dimension).map(|_| 1e12 * rng.signed()).collect();
+            let far = json!({"query": "distance", "a": shape, "b": {"type": "point", "at": at}});
+            let line = certified(far.to_string().as_bytes(), &Meshes::relative_to("")).unwrap_or_default();
+            let answer = serde_json::from_slice::<Value>(&line).unwrap_or_default();
+            for (i, x) in mean.iter_mut().enumerate() {
+                *x += answer["answer"]["point_a"][i].as_f64().unwrap_or(0.0) / count as f64;
+            }
+        }
+        mean
+    };
+    let (a, b) = (center(&query["a"], rng), center(&query["b"], rng));
+    with(with(with(query, "query", "growth_distance"), "center_a", a), "center_b", b)
+}
+
+/// A path as a box of joint values about its first waypoint.
+fn boxed(path: Value, rng: &mut Rng) -> Value {
+    let values = path["waypoints"][0].as_array().into_iter().flatten().filter_map(Value::as_f64);
+    let joint_box: Vec<_> = values.map(|value| (value, 0.25 * value.abs() * rng.unit())).collect();
+    let joint_box: Vec<_> = joint_box.into_iter().map(|(value, half)| [value - half, value + half]).collect();
+    without(with(with(path, "query", "joint_box"), "box", json!(joint_box)), &["waypoints"])
+}
+
+fn without(mut query: Value, names: &[&str]) -> Value {
+    if let Some(fields) = query.as_object_mut() {
+        fields.retain(|name, _| !names.contains(&name.as_str()));
+    }
+    query
 }

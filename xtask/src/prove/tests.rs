@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use workloads::rng::Rng;
 
-use super::random::{PLANES, ROBOTS, query};
+use super::random::{CLEARANCES, PLANES, ROBOTS, query};
 use super::{Counts, judge_line};
 use crate::EMBEDDED;
 use crate::mesh::Meshes;
@@ -486,4 +486,142 @@ fn what_cannot_be_read_is_not_proved() {
         assert_eq!(verdict, Verdict::NotProved, "{line}");
         assert!(said["because"].is_string(), "{said}");
     }
+}
+
+/// The suites of least distances, growth distances, and boxes among obstacles.
+const OF_CLEARANCES: &[&str] = &["growth_distance", "motion_clearance", "path_clearance", "joint_box_scene"];
+
+/// The lines of a suite, with answers and certificates.
+fn suite(name: &str) -> Vec<Value> {
+    let text = std::fs::read_to_string(format!("{EMBEDDED}/{name}.jsonl")).expect("the suite is there");
+    let lines: Vec<&str> = text.lines().filter(|line| line.starts_with('{')).collect();
+    let lines = lines.par_iter().filter_map(|line| certified(line.as_bytes(), &meshes()));
+    lines.map(|line| serde_json::from_slice(&line).expect("JSON")).collect()
+}
+
+/// All of the embedded suites, and no part is left out.
+#[test]
+fn the_embedded_clearances_are_proved() {
+    for (name, most) in OF_CLEARANCES.iter().zip([70, 30, 8, 14]) {
+        let lines = suite(name);
+        assert!(lines.len() >= most, "only {} of {name}", lines.len());
+        lines.par_iter().for_each(|line| {
+            let (verdict, said) = judge_line(line.to_string().as_bytes(), &meshes());
+            assert_eq!(verdict, Verdict::Proved, "{name} {}: {said}", line["id"]);
+            assert!(said["parts_not_proved"].as_u64().unwrap_or(0) == 0, "{name} {}: {said}", line["id"]);
+        });
+    }
+}
+
+/// Nearly all of random ones, of every kind in both precisions; and not with one thing changed such that it proves nothing
+/// any more, or claims what is false.
+#[test]
+fn random_clearances_are_proved_and_none_that_is_spoilt() {
+    let mut rng = Rng::new(7);
+    let queries: Vec<Value> = (0..100).map(|_| query(CLEARANCES, &mut rng)).collect();
+    let judged = queries.par_iter().enumerate().filter_map(|(seed, query)| {
+        let line: Value = serde_json::from_slice(&certified(query.to_string().as_bytes(), &meshes())?).expect("JSON");
+        let (verdict, said) = judge_line(line.to_string().as_bytes(), &meshes());
+        if verdict != Verdict::Proved {
+            return Some((verdict, said, 0));
+        }
+        // A few of the lines that it becomes.
+        let mut rng = Rng::new(seed as u64);
+        let mut spoilt = spoilt_clearances(&line, &mut rng);
+        spoilt.retain(|_| rng.below(3) == 0);
+        for (changed, damaged) in &spoilt {
+            assert_ne!(self::verdict(damaged), Verdict::Proved, "{changed}: {damaged}\n once {line}");
+        }
+        Some((verdict, said, spoilt.len()))
+    });
+    let judged: Vec<_> = judged.collect();
+    let open: Vec<_> = judged.iter().filter(|(verdict, ..)| *verdict != Verdict::Proved).collect();
+    let spoilt: usize = judged.iter().map(|(.., spoilt)| spoilt).sum();
+    assert!(judged.len() > 80 && open.len() <= 2, "{} of {} are not proved: {open:?}", open.len(), judged.len());
+    assert!(open.iter().all(|(verdict, ..)| *verdict == Verdict::NotProved), "{open:?}");
+    assert!(spoilt > 400, "only {spoilt} were spoilt");
+}
+
+/// The lines that a proved one becomes if one thing is spoilt: each claim of the number, and of where it is; each part
+/// of the certificate; and the question.
+fn spoilt_clearances(line: &Value, rng: &mut Rng) -> Vec<(String, Value)> {
+    let mut lines = Vec::new();
+    let is_of_path = line["answer"].get("clearance").is_some();
+    let [claim, proof] =
+        ["answer", "certificate"].map(|of| format!("/{of}{}", if is_of_path { "/clearance" } else { "" }));
+    let at = |pointer: &str| line.pointer(pointer).expect("a place");
+    let mut with = |changes: &[(&str, &str, Value)]| {
+        let mut line = line.clone();
+        for (object, name, value) in changes {
+            line.pointer_mut(object).expect("an object")[name] = value.clone();
+        }
+        lines.push((format!("{changes:?}"), line));
+    };
+    let scalar = if line["query"] == "growth_distance" { "scale" } else { "distance" };
+    let answer = at(&claim);
+    let number = |name: &str| answer[name].as_f64();
+    if let (Some(lower), Some(upper), Some(value)) = (number("lower"), number("upper"), number(scalar)) {
+        let far = |x: f64| x * 1.001 + if x == 0.0 { 1e-3 } else { 0.0 };
+        // A bracket above the truth, and one below it; a bound alone; and a number beside its bracket.
+        with(&[
+            (&claim, "lower", json!(far(upper))),
+            (&claim, scalar, json!(far(upper))),
+            (&claim, "upper", json!(far(far(upper)))),
+        ]);
+        with(&[(&claim, "lower", json!(far(upper)))]);
+        with(&[(&claim, scalar, json!(far(upper)))]);
+        if lower > 0.0 {
+            let less = json!(lower * 0.999);
+            with(&[(&claim, "lower", less.clone()), (&claim, scalar, less.clone()), (&claim, "upper", less.clone())]);
+            with(&[(&claim, "upper", less.clone())]);
+            with(&[(&claim, scalar, less)]);
+            // The distance from a half-space needs none.
+            let other = answer["obstacle"].as_u64().map_or(&line["b"], |index| &line["obstacles"][index as usize]);
+            if other["type"] != "half_space" {
+                with(&[(&proof, "points", json!([]))]);
+            }
+        }
+        assert!(lower <= value && value <= upper, "{line}");
+    }
+    for name in ["point", "point_a", "point_b", "normal"] {
+        // By more than bodies that are posed far away, and back again, are off by rounding.
+        let far = 1e4
+            * (1.0
+                + answer[name].as_array().into_iter().flatten().filter_map(Value::as_f64).map(f64::abs).sum::<f64>());
+        for (i, x) in answer[name].as_array().into_iter().flatten().enumerate() {
+            let (x, mut moved) = (x.as_f64().expect("a number"), answer[name].clone());
+            moved[i] = json!(x + far);
+            with(&[(&claim, name, moved)]);
+        }
+        if name == "normal" && answer[name].is_array() {
+            let flipped = answer[name].as_array().into_iter().flatten().map(|x| json!(-x.as_f64().expect("a number")));
+            with(&[(&claim, name, flipped.collect())]);
+        }
+    }
+    for name in ["edge", "link", "body", "obstacle", "other_link", "other_body"] {
+        if let Some(index) = answer[name].as_u64() {
+            with(&[(&claim, name, json!(index + 1000))]);
+        }
+    }
+    if let Some(time) = number("time") {
+        let end = line["max_time"].as_f64().unwrap_or(1.0);
+        with(&[(&claim, "time", json!(time + 2.0 * end + 1.0))]);
+        with(&[(&claim, "time", json!(-1.0))]);
+    }
+    with(&[(&claim, "status", json!("certain"))]);
+    with(&[(&claim, "nobody_knows", json!(1))]);
+    with(&[("", "nobody_knows", json!(1))]);
+    with(&[("", "precision", json!("f16"))]);
+    if let Some(meets) = answer["meets"].as_bool() {
+        with(&[(&claim, "meets", json!(!meets))]);
+    }
+    // What is proved to be free at once needs no parts.
+    let parts = at(&proof)["free"].as_array().map_or(0, Vec::len) as u64;
+    if parts > 0 && (number("lower").is_some_and(|lower| lower > 0.0) || answer["meets"] == json!(false)) {
+        let mut line = line.clone();
+        let free = line.pointer_mut(&proof).expect("a proof")["free"].as_array_mut().expect("a list");
+        let part = free.remove(rng.below(parts) as usize);
+        lines.push((part.to_string(), line));
+    }
+    lines
 }

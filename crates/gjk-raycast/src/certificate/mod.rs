@@ -14,7 +14,7 @@ use convex_support::{Core, Hint, Scalar, SupportMap, Vector};
 
 pub use self::points::WeightedSupport;
 use self::points::{Seen, points, wide};
-use crate::{Distance, Intersection, LinearCast, Motion, Outcome, Ray, RayCast};
+use crate::{Distance, GrowthDistance, Intersection, LinearCast, Motion, Outcome, Ray, RayCast};
 
 /// The proof of a bracket: a plane for its lower end, support points for its upper end.
 ///
@@ -134,6 +134,28 @@ where
     };
     let points = points_of_pair(a, b, along * hit.time.as_f64(), hit.normal, Some(along));
     Certificate { plane: hit.normal, points }
+}
+
+/// The certificate of a [`growth_distance`](crate::growth_distance()) about these centres, `c_A` and `c_B`.
+///
+/// With `d = c_B − c_A` the line from zero along `d` leaves `(A − c_A) − (B − c_B)`, which is `A − B` moved by `d`, where
+/// it is `d/s` for the scale `s`. The points are about that place of it. There are none if the scale is 0, or not known.
+#[must_use]
+pub fn growth_distance_certificate<A, B>(
+    a: &A,
+    center_a: A::Vector,
+    b: &B,
+    center_b: A::Vector,
+    answer: &GrowthDistance<A::Vector>,
+) -> Certificate<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let Some(normal) = answer.normal else { return Certificate::of_plane(None) };
+    let along = wide(center_b) - wide(center_a);
+    let at = along * (answer.scale.as_f64().recip() - 1.0);
+    Certificate { plane: Some(normal), points: points_of_pair(a, b, at, Some(normal), Some(along)) }
 }
 
 /// The axis of a miss, tilted along the ray if it is across the ray to rounding: the normal of a plane before all of

@@ -20,6 +20,7 @@ pub use frame::LinkFrame;
 pub use joint::{Joint, JointKind, Link};
 pub use joint_box::{JointBox, JointBoxOutcome};
 pub use joint_trajectory::{JointBounds, JointState, JointTrajectory};
+pub(crate) use path_answer::ProvedSteps;
 pub use path_answer::{BodyPair, FreeBox, FreeInterval, Met, NearestOnPath, Path, PathClearance, PathContact};
 pub use robot::Linkage;
 pub use sweep::PathWorkspace;

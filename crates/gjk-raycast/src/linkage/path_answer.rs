@@ -1,6 +1,7 @@
 //! The answer about a path, and the parts of a proof that it, or a box of joint values, is free. Observers see the
 //! parts; nothing keeps them.
 
+use convex_support::numerics::bound::roundings;
 use convex_support::{Scalar as _, Vector};
 
 use crate::{Impact, MotionCast, MotionClearance, MotionIterate, Outcome};
@@ -160,15 +161,15 @@ pub struct FreeBox<'b, V: Vector, P = [usize; 2]> {
 /// The intervals that a cast has proved so far. Whenever the lower bound of the cast reaches the time that was examined
 /// last, an interval ends there, which began where the one before ended. The last end and the time examined last are
 /// kept, each with its normal.
-pub(super) struct ProvedSteps<V: Vector> {
+pub(crate) struct ProvedSteps<V: Vector> {
     last: Option<(V::Scalar, V)>,
     seen: Option<(V::Scalar, V)>,
 }
 
 impl<V: Vector> ProvedSteps<V> {
-    pub(super) const NONE: Self = Self { last: None, seen: None };
+    pub(crate) const NONE: Self = Self { last: None, seen: None };
 
-    pub(super) fn see(&mut self, there: &MotionIterate<V>, show: impl FnMut([V::Scalar; 2], [V; 2])) {
+    pub(crate) fn see(&mut self, there: &MotionIterate<V>, show: impl FnMut([V::Scalar; 2], [V; 2])) {
         self.come_to(there.lower, show);
         self.seen = Some((there.time, there.normal));
     }
@@ -181,14 +182,20 @@ impl<V: Vector> ProvedSteps<V> {
         self.last = Some(there);
     }
 
-    /// Shows the interval that the answer adds, if it is a miss: one plane proves the rest of the time.
-    pub(super) fn end(mut self, cast: &MotionCast<V>, mut show: impl FnMut([V::Scalar; 2], [V; 2])) {
+    /// Shows the interval that the answer adds: one plane proves the rest of the time before a miss, and, if nothing
+    /// turns, all of the time before a contact, but for rounding.
+    pub(crate) fn end(mut self, cast: &MotionCast<V>, mut show: impl FnMut([V::Scalar; 2], [V; 2])) {
         self.come_to(cast.lower, &mut show);
         let from = self.last.map_or(V::Scalar::ZERO, |(time, _)| time);
-        if let Outcome::Miss(miss) = &cast.outcome
-            && (from < cast.lower || cast.lower == V::Scalar::ZERO)
-        {
-            show([from, cast.lower], [miss.axis; 2]);
+        match &cast.outcome {
+            Outcome::Miss(miss) if from < cast.lower || cast.lower == V::Scalar::ZERO => {
+                show([from, cast.lower], [miss.axis; 2]);
+            }
+            Outcome::Hit(Impact { normal: Some(normal), .. }) if self.last.is_none() && cast.lower > from => {
+                let before = cast.lower - roundings(4.0, cast.lower);
+                show([from, before], [*normal; 2]);
+            }
+            _ => {}
         }
     }
 }

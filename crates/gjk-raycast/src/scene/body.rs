@@ -2,12 +2,13 @@
 
 use convex_support::{AngularVelocity as _, Scalar as _, ScalarOf, SupportMap, Vector};
 
+use crate::linkage::ProvedSteps;
 use crate::motion::clearance_within;
 use crate::{
     ChainMotion, Contact, Distance, DistanceOptions, HalfSpace, Impact, LinearCast, LinearCastOptions, Motion,
     MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate, Ray, RayCast, RayCastError,
     RayCastOptions, RigidMotion, SignedDistance, SignedDistanceOptions, Trajectory, contact, distance, linear_cast,
-    motion_cast, motion_cast_with, motion_clearance, ray_cast, signed_distance,
+    motion_cast_with, motion_clearance, ray_cast, signed_distance,
 };
 
 /// A body of a [`Scene`](crate::Scene): a bounded shape, or a half-space.
@@ -171,14 +172,48 @@ impl<S: SupportMap> Body<S> {
         of_body: RigidMotion<S::Vector>,
         options: MotionCastOptions<S::Vector>,
     ) -> Result<MotionCast<S::Vector>, RayCastError> {
+        self.watched_cast_of_both(shape, motion, of_body, options, |_| {})
+    }
+
+    /// [`motion_cast_of_both`](Self::motion_cast_of_both) with an observer that sees its proof: times between which one
+    /// plane keeps the two apart, by more than the target distance, and its normals at both, as those of a
+    /// [`FreeInterval`](crate::FreeInterval). They are in the world or, of a half-space, as it sees them. If the cast
+    /// misses, they cover all of the time.
+    ///
+    /// # Errors
+    /// Those of [`motion_cast`](crate::motion_cast()).
+    pub fn motion_cast_of_both_with<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: RigidMotion<S::Vector>,
+        of_body: RigidMotion<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
+        mut observer: impl FnMut([ScalarOf<S>; 2], [S::Vector; 2]),
+    ) -> Result<MotionCast<S::Vector>, RayCastError> {
+        let mut steps = ProvedSteps::NONE;
+        let see = |there: MotionIterate<S::Vector>| steps.see(&there, &mut observer);
+        let cast = self.watched_cast_of_both(shape, motion, of_body, options, see)?;
+        steps.end(&cast, observer);
+        Ok(cast)
+    }
+
+    fn watched_cast_of_both<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: RigidMotion<S::Vector>,
+        of_body: RigidMotion<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
+        observer: impl FnMut(MotionIterate<S::Vector>),
+    ) -> Result<MotionCast<S::Vector>, RayCastError> {
         let half_space = match self {
-            Self::Convex(body) => return motion_cast(shape, motion, body, of_body, options),
+            Self::Convex(body) => return motion_cast_with(shape, motion, body, of_body, options, observer),
             Self::HalfSpace(half_space) if of_body == RigidMotion::default() => {
-                return half_space.motion_cast(shape, motion, options);
+                return half_space.motion_cast_with(shape, motion, options, observer);
             }
             Self::HalfSpace(half_space) => half_space,
         };
-        let cast = half_space.motion_cast(shape, ChainMotion::new(&seen_from(of_body, motion)), options)?;
+        let seen = seen_from(of_body, motion);
+        let cast = half_space.motion_cast_with(shape, ChainMotion::new(&seen), options, observer)?;
         let outcome = cast.outcome.map(|hit| {
             let place = of_body.displacement(hit.time);
             let normal = hit.normal.map(|normal| place.rotation() * normal);
