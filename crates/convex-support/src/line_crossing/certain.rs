@@ -33,6 +33,10 @@ pub struct LineQuery<V: Vector> {
     /// Whether to compute in twice the precision: for the few lines for which the closed form in plain numbers is
     /// certain of nothing.
     pub is_close: bool,
+    /// Whether only a line from a source near the shape has to be answered, and only by the shortest of the shape's
+    /// closed forms. If nothing is certain then, the shape is to be asked again without this. So what most rays run is
+    /// short, and has no part of what takes lines from afar.
+    pub is_quick: bool,
 }
 
 impl<V: Vector> LineQuery<V> {
@@ -40,7 +44,7 @@ impl<V: Vector> LineQuery<V> {
     #[inline(always)]
     #[must_use]
     pub fn new(source: V, direction: V) -> Self {
-        Self { source, direction, radius: V::Scalar::ZERO, error: V::Scalar::ZERO, is_close: false }
+        Self { source, direction, radius: V::Scalar::ZERO, error: V::Scalar::ZERO, is_close: false, is_quick: false }
     }
 
     /// The line relative to a point that is the sum of two.
@@ -178,22 +182,33 @@ impl<V: Vector> NearLine<V> {
     /// small or large to be squared.
     #[inline(always)]
     pub(crate) fn new(line: LineQuery<V>, origin: V, size: V::Scalar) -> Option<Self> {
-        let (near, is_near) = Self::seen::<false>(line, origin, size);
+        if line.is_quick {
+            // A moderate square is that of a moderate length, and the closed forms need it.
+            let (near, is_near) = Self::seen::<false>(line, origin, size, line.direction.length_squared());
+            return is_near.then_some(near);
+        }
+        let length = sum_of_coordinates(line.direction);
+        let (near, is_near) = Self::seen::<false>(line, origin, size, length);
         if is_near {
             return Some(near);
         }
-        let (near, is_near) = Self::seen::<true>(line, origin, size);
-        if is_near { Some(near) } else { None }
+        let (near, is_near) = Self::seen::<true>(line, origin, size, length);
+        is_near.then_some(near)
     }
 
     /// The line without a branch, and whether it is [near](Self::new). Unless `FAR` is set, a line is near only if its
-    /// source is.
+    /// source is. Of `length`, which stands for that of the direction, only the magnitude counts.
     #[inline(always)]
-    pub(super) fn seen<const FAR: bool>(line: LineQuery<V>, origin: V, size: V::Scalar) -> (Self, bool) {
+    pub(super) fn seen<const FAR: bool>(
+        line: LineQuery<V>,
+        origin: V,
+        size: V::Scalar,
+        length: V::Scalar,
+    ) -> (Self, bool) {
         let LineQuery { source, direction, error, .. } = line;
         let number = V::Scalar::from_f64;
-        // NaN and zero are not moderate; the largest coordinate may pass over a NaN, but the sum does not.
-        let is_moderate = is_moderate(size) & is_moderate(sum_of_coordinates(direction));
+        // NaN and zero are not moderate; the largest coordinate may pass over a NaN, but no sum does.
+        let is_moderate = is_moderate(size) & is_moderate(length);
         let (seen, near) = (source - origin, size * number(NEAR));
         let is_near = is_moderate & (seen.length_squared() <= near * near);
         let (base, source, is_near) = if FAR {
@@ -205,7 +220,8 @@ impl<V: Vector> NearLine<V> {
                 is_near | is_moderate & (foot.length_squared() <= near * near),
             )
         } else {
-            (V::Scalar::ZERO, seen, is_near)
+            // With minus zero a sum is no operation.
+            (-V::Scalar::ZERO, seen, is_near)
         };
         let rounding = V::Scalar::EPSILON * (size * number(OF_SIZE) + sum_of_coordinates(source) * number(OF_DISTANCE));
         // Before what the difference from the origin lost is added to it, the foot may be that long, and its rounding
@@ -243,22 +259,30 @@ impl<V: Vector> NearLine<V> {
         CertainCrossing::Enters { entry, bounds: [earliest - rounding, latest + rounding], normal }
     }
 
-    /// A line from a source near a ball about zero that clearly misses it, told without a quotient or a root.
+    /// Whether a quick line without an error of its own clearly misses a ball about zero, told without a quotient or a
+    /// root.
     ///
     /// `|x|²·d²` of the line's nearest point `x` is `s²·d² − (s·d)²`, right to 8ε of `s²·d²`. With a source no more than
-    /// 8 radii away, the error of `is_past` is at most 41ε of the radius, and asks for 126ε of its square.
+    /// 8 radii away, the error of `is_past` is at most 41ε of the radius, and asks for 126ε of its square. The size and
+    /// the square of the direction are moderate, so that the square of the one times the other keeps all digits.
     #[inline(always)]
-    pub(crate) fn clear_miss(line: LineQuery<V>) -> Option<CertainCrossing<V>> {
-        let LineQuery { source, direction, radius, error, .. } = line;
+    fn clearly_passes(&self, radius: V::Scalar) -> bool {
+        let Self { source, direction, .. } = *self;
         let (dd, sd) = (direction.length_squared(), source.dot(direction));
         let (ss, rr, number) = (source.length_squared(), radius * radius, V::Scalar::from_f64);
         let margin = (ss * number(32.0) + rr * number(256.0)) * V::Scalar::EPSILON;
-        let is_known = error == V::Scalar::ZERO
-            && is_moderate(dd)
-            && is_moderate(rr)
-            && ss <= rr * number(NEAR * NEAR)
-            && ss * dd - sd * sd > (rr + margin) * dd;
-        is_known.then(|| CertainCrossing::Misses(super::ball::chord(radius, source, direction, dd.recip()).nearest))
+        ss * dd - sd * sd > (rr + margin) * dd
+    }
+
+    /// A ball about zero: most rays that miss it clearly miss it.
+    #[inline(always)]
+    pub(crate) fn ball_or_clear_miss(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        if line.is_quick & (line.error == V::Scalar::ZERO) && self.clearly_passes(line.radius) {
+            let Self { source, direction, .. } = *self;
+            let chord = super::ball::chord(line.radius, source, direction, direction.length_squared().recip());
+            return Some(CertainCrossing::Misses(chord.nearest));
+        }
+        self.ball(line.radius)
     }
 
     /// A ball about zero.
@@ -266,7 +290,7 @@ impl<V: Vector> NearLine<V> {
     pub(crate) fn ball(&self, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let recip = self.direction.length_squared().recip();
         let chord = super::ball::chord(radius, self.source, self.direction, recip);
-        if chord.is_past(radius, self.error, V::Scalar::ZERO) {
+        if chord.is_past(radius, self.error, -V::Scalar::ZERO) {
             return Some(CertainCrossing::Misses(chord.nearest));
         }
         let slack = chord.slack(radius, self.error, recip, least_chord::<V::Scalar>())?;
@@ -276,29 +300,31 @@ impl<V: Vector> NearLine<V> {
 
     /// A box about zero: the line is in all of its slabs, each smaller and larger by the error.
     ///
-    /// For a line that is parallel to a slab this divides by zero, and the line is in the slab from `−∞` to `∞` or
-    /// nowhere. If it lies in the plane of a side that was moved by the error, `0/0` compares false and changes
-    /// nothing: the line counts as being in that slab, or as not known to miss it.
+    /// The line is mirrored, exactly, so that it runs along each axis: it enters a slab where it is `h + x` away from
+    /// behind, and leaves it `h − x` ahead. For a line that is parallel to a slab this divides by zero, and the line is
+    /// in the slab from `−∞` to `∞` or nowhere. If it lies in the plane of a side that was moved by the error, `0/0`
+    /// compares false and changes nothing: the line counts as being in that slab, or as not known to miss it.
     #[inline(always)]
     pub(crate) fn cuboid(&self, half_extents: V) -> Option<CertainCrossing<V>> {
-        let Self { source, direction, error, .. } = *self;
-        let per_unit = V::ONE / direction;
-        let near = half_extents.copysign(-direction);
-        let (to_near, to_far) = (near - source, -near - source);
-        let shift = V::splat(error).copysign(direction);
-        let enters = to_near * per_unit;
-        let (enters_early, enters_late) = ((to_near - shift) * per_unit, (to_near + shift) * per_unit);
-        let (leaves_early, leaves_late) = ((to_far - shift) * per_unit, (to_far + shift) * per_unit);
-        let (earliest, latest) = (largest(enters_early), largest(enters_late));
+        let Self { source, direction, .. } = *self;
+        let (per_unit, sign) = ((V::ONE / direction).abs(), V::ONE.copysign(direction));
+        let (mirrored, error) = (source * sign, V::splat(self.error));
+        let (since_near, to_far) = (half_extents + mirrored, half_extents - mirrored);
+        let (enters_early, enters_late) = ((since_near + error) * per_unit, (since_near - error) * per_unit);
+        let (leaves_early, leaves_late) = ((to_far - error) * per_unit, (to_far + error) * per_unit);
+        let (earliest, latest) = (-least(enters_early), -least(enters_late));
         if latest <= least(leaves_early) {
-            let entry = largest(enters);
-            let normal = axis_of(enters, entry) * V::ONE.copysign(-direction);
-            return Some(self.enters([earliest, entry, latest], normal));
+            let enters = since_near * per_unit;
+            let entry = least(enters);
+            return Some(self.enters([earliest, -entry, latest], -(axis_of(enters, entry) * sign)));
         }
         let leaves = least(leaves_late);
+        if !(earliest > leaves) {
+            return None;
+        }
         // The line leaves one slab before it enters the other: projected along both of them, it passes a rectangle.
-        let axes = || [axis_of(enters_early, earliest), axis_of(leaves_late, leaves)];
-        (earliest > leaves).then(|| CertainCrossing::Misses(across_two_axes(axes(), source, direction)))
+        let axes = [axis_of(enters_early, -earliest), axis_of(leaves_late, leaves)];
+        Some(CertainCrossing::Misses(across_two_axes(axes, source, direction)))
     }
 }
 
@@ -342,10 +368,11 @@ impl<V: Vector> NearLine<V> {
 
     /// A segment swept by a ball.
     #[inline(always)]
-    pub(crate) fn segment(&self, spine: &Spine<V>, radius: V::Scalar) -> Option<CertainCrossing<V>> {
-        let line = self.seen_along(spine);
-        if let Some(known) = line.capsule(spine, radius) {
-            return Some(known);
+    pub(crate) fn segment(&self, spine: &Spine<V>, asked: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        let (line, radius) = (self.seen_along(spine), asked.radius);
+        let known = line.capsule(spine, radius);
+        if asked.is_quick || known.is_some() {
+            return known;
         }
         let half_height = spine.half_height;
         let closest = |x: V| spine.axis * spine.split(x).0.max(-half_height).min(half_height);
@@ -452,8 +479,12 @@ impl<V: Vector> NearLine<V> {
         let slack = ball.slack(radius, error, recip, least_chord)?;
         let entry = ball.ends().0;
         let height = (along + spine.split(direction).0 * (entry - base - slack)) * end;
-        (height >= half_height + error)
-            .then(|| self.enters([entry - slack, entry, entry + slack], ball.normal(radius, direction, recip)))
+        // Not `then`, whose closure the compiler may call.
+        if height >= half_height + error {
+            Some(self.enters([entry - slack, entry, entry + slack], ball.normal(radius, direction, recip)))
+        } else {
+            None
+        }
     }
 
     /// A set about zero, swept by a ball, whose crossing has a closed form, with known closest points and support
@@ -581,7 +612,7 @@ impl<V: Vector3> NearLine<V> {
         // The line leaves the side before it is at the height of the lids, or enters it after that.
         let axis = || past_rim(source, direction, if leaves < top { top } else { bottom });
         let leaves_late = sooner(leaves + slack, (to_far + shift) * per_rise);
-        (earliest > leaves_late).then(|| CertainCrossing::Misses(axis()))
+        if earliest > leaves_late { Some(CertainCrossing::Misses(axis())) } else { None }
     }
 }
 
@@ -628,7 +659,7 @@ pub(super) fn cone_reach<V: Vector3>(shape: &ConeMeasures<V::Scalar>, axis: V) -
 
 /// The sum of the magnitudes of the coordinates, an upper bound of the length.
 #[inline(always)]
-fn sum_of_coordinates<V: Vector>(v: V) -> V::Scalar {
+pub(super) fn sum_of_coordinates<V: Vector>(v: V) -> V::Scalar {
     v.abs().dot(V::ONE)
 }
 
@@ -642,12 +673,6 @@ fn later<S: Scalar>(a: S, b: S) -> S {
 #[inline(always)]
 fn sooner<S: Scalar>(a: S, b: S) -> S {
     if b < a { b } else { a }
-}
-
-/// The largest coordinate; `NaN` is passed over.
-#[inline(always)]
-fn largest<V: Vector>(v: V) -> V::Scalar {
-    (0..V::DIM).fold(-V::Scalar::infinity(), |most, i| later(most, v.get(i)))
 }
 
 /// The smallest coordinate; `NaN` is passed over.
@@ -684,15 +709,18 @@ mod tests {
             let line = LineQuery::<Vec3A>::new(source, direction).sweeping(radius);
             let s = source.as_dvec3();
             let off = (s - d * (s.dot(d) / d.dot(d))).length() - f64::from(radius);
-            let Some(known) = NearLine::clear_miss(line) else {
+            let quick = NearLine::new(LineQuery { is_quick: true, ..line }, Vec3A::ZERO, radius);
+            if !quick.is_some_and(|near| near.clearly_passes(radius)) {
                 assert!(off < 1e-3 || s.length() > 8.0 * f64::from(radius), "{off} {source} {direction}");
                 continue;
-            };
+            }
             clear += 1;
             near += u32::from(off < 1e-4);
             assert!(off > 0.0, "{off} {source} {direction}");
-            let chord = NearLine::new(line, Vec3A::ZERO, radius).and_then(|line| line.ball(radius));
-            assert_eq!(chord, Some(known), "{off} {source} {direction}");
+            let known = |line| NearLine::new(line, Vec3A::ZERO, radius)?.ball_or_clear_miss(line);
+            let by_chord = known(line);
+            assert!(matches!(by_chord, Some(CertainCrossing::Misses(_))), "{off} {source} {direction}");
+            assert_eq!(known(LineQuery { is_quick: true, ..line }), by_chord, "{off} {source} {direction}");
         }
         assert!(clear > 2000 && near > 100, "{clear} {near}");
     }

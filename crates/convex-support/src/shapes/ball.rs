@@ -69,10 +69,7 @@ impl<V: Vector> SupportMap for Ball<V> {
             return closely(self, line);
         }
         let line = line.sweeping(self.radius);
-        if let Some(missed) = NearLine::clear_miss(line) {
-            return Some(missed);
-        }
-        NearLine::new(line, V::ZERO, line.radius)?.ball(line.radius)
+        NearLine::new(line, V::ZERO, line.radius)?.ball_or_clear_miss(line)
     }
 
     fn close_crossing(&self, line: &CloseLine) -> Close {

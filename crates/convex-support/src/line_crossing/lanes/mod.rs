@@ -10,7 +10,7 @@
 #[cfg(feature = "hull")]
 pub(crate) mod hull;
 
-use super::certain::BeyondEnd;
+use super::certain::{BeyondEnd, sum_of_coordinates};
 use super::{CertainCrossing, LineQuery, NearLine, Spine, Turned};
 use crate::numerics::widest::{Loop, widest};
 use crate::{Matrix, Scalar, Vector, compiled_once};
@@ -181,7 +181,7 @@ fn approach<V: Vector>(lines: &mut Lines<V::Scalar>, origin: V, size: V::Scalar,
         fn call(&self, lines: &mut Lines<V::Scalar>, line: usize) {
             let (source, direction) = (vector::<V>(&lines.source, line), vector(&lines.direction, line));
             let asked = LineQuery { error: lines.error[line], ..LineQuery::new(source, direction) }.within(self.2);
-            let (near, is_near) = NearLine::seen::<FAR>(asked, self.0, self.1);
+            let (near, is_near) = NearLine::seen::<FAR>(asked, self.0, self.1, sum_of_coordinates(direction));
             lines.base[line] = near.base;
             set(&mut lines.near, line, near.source);
             lines.near_error[line] = near.error;
