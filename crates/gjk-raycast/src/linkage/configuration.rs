@@ -8,7 +8,7 @@
 use alloc::vec::Vec;
 
 use convex_support::numerics::bound::raised;
-use convex_support::{BoundingSphere, Posed, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{BoundingSphere, Point, Posed, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::error::LinkageError;
@@ -24,9 +24,17 @@ use crate::{DistanceOptions, Scene, SignedDistance, SignedDistanceOptions, dista
 /// What questions about one configuration work with. Once it has served a linkage, the next allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct ConfigurationWorkspace<V: Vector> {
-    /// The frame of each joint that moves, and of each link.
+    /// The frame of each joint that moves, and the place of each link.
     moving: Vec<MovingFrame<V>>,
-    links: Vec<LinkFrame<V>>,
+    links: Vec<LinkPlace<V>>,
+}
+
+/// Where a link is.
+#[derive(Clone, Debug)]
+struct LinkPlace<V: Vector> {
+    frame: LinkFrame<V>,
+    /// The pose of its bodies; `None` if it is not finite.
+    pose: Option<Posed<Point<V>>>,
 }
 
 impl<V: Vector> ConfigurationWorkspace<V> {
@@ -102,25 +110,25 @@ impl<S: SupportMap> Linkage<S> {
         workspace: &mut ConfigurationWorkspace<S::Vector>,
     ) -> Result<bool, LinkageError> {
         check_limits(ScalarOf::<S>::ZERO, target_distance)?;
-        let frames = self.place_links(values, workspace)?;
+        let places = self.place_links(values, workspace)?;
         // A distance of this or more is greater than the target, whatever the errors of the poses.
         let enough = |errors: ScalarOf<S>| {
             let beyond = raised(Float::max(target_distance, Scalar::ZERO) + errors);
             Float::max(beyond, Float::min_positive_value())
         };
         for at in self.each_body() {
-            let (shape, error) = self.body_at(at, frames)?;
+            let (shape, error) = self.body_at(at, places)?;
             let limit = enough(error);
             if scene.all().nearest(&shape, DistanceOptions::new().with_limit(limit)).lower < limit {
                 return Ok(false);
             }
         }
         for [a, b] in self.own_pairs() {
-            let limit = enough(self.error_at(a, frames) + self.error_at(b, frames));
-            if self.gap([a, b], frames) >= limit {
+            let limit = enough(self.error_at(a, places) + self.error_at(b, places));
+            if self.gap([a, b], places) >= limit {
                 continue;
             }
-            let [(a, _), (b, _)] = [self.body_at(a, frames)?, self.body_at(b, frames)?];
+            let [(a, _), (b, _)] = [self.body_at(a, places)?, self.body_at(b, places)?];
             if distance(&a, &b, DistanceOptions::new().with_limit(limit)).lower < limit {
                 return Ok(false);
             }
@@ -171,11 +179,11 @@ impl<S: SupportMap> Linkage<S> {
         options: SignedDistanceOptions<S::Vector>,
         workspace: &mut ConfigurationWorkspace<S::Vector>,
     ) -> Result<Option<LinkClearance<S::Vector>>, LinkageError> {
-        let frames = self.place_links(values, workspace)?;
+        let places = self.place_links(values, workspace)?;
         let end = Float::min(options.limit, Float::infinity());
         let mut least = LeastClearance { limit: end, lower: end, found: None };
         for at in self.each_body() {
-            let (shape, error) = self.body_at(at, frames)?;
+            let (shape, error) = self.body_at(at, places)?;
             let there = scene.all().least_signed_distance(&shape, options.with_limit(least.room()));
             least.lower = Float::min(least.lower, there.lower - error);
             if let Some(next) = there.least {
@@ -185,11 +193,11 @@ impl<S: SupportMap> Linkage<S> {
             }
         }
         for [at, b] in self.own_pairs() {
-            let error = raised(self.error_at(at, frames) + self.error_at(b, frames));
-            if self.gap([at, b], frames) - error > least.room() {
+            let error = raised(self.error_at(at, places) + self.error_at(b, places));
+            if self.gap([at, b], places) - error > least.room() {
                 continue;
             }
-            let [(shape, _), (other, _)] = [self.body_at(at, frames)?, self.body_at(b, frames)?];
+            let [(shape, _), (other, _)] = [self.body_at(at, places)?, self.body_at(b, places)?];
             let there = signed_distance(&shape, &other, options.with_limit(least.room()));
             least.see(at, Met::Link { link: b.0, body: b.1 }, there, error);
         }
@@ -229,15 +237,16 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         values: &[ScalarOf<S>],
         workspace: &'w mut ConfigurationWorkspace<S::Vector>,
-    ) -> Result<&'w [LinkFrame<S::Vector>], LinkageError> {
+    ) -> Result<&'w [LinkPlace<S::Vector>], LinkageError> {
         self.check(0, values)?;
         let ConfigurationWorkspace { moving, links } = workspace;
         self.skeleton.place(values, moving);
         links.clear();
-        let frame = |view: &LinkView<S::Vector>| {
-            frame_of(moving, view.route.stages.last().map(|stage| stage.column)).then(&view.route.tail)
+        let place = |view: &LinkView<S::Vector>| {
+            let frame = frame_of(moving, view.route.stages.last().map(|stage| stage.column)).then(&view.route.tail);
+            LinkPlace { pose: frame.pose(), frame }
         };
-        links.extend(self.skeleton.views[..self.links()].iter().map(frame));
+        links.extend(self.skeleton.views[..self.links()].iter().map(place));
         Ok(links)
     }
 
@@ -260,24 +269,24 @@ impl<S: SupportMap> Linkage<S> {
     fn body_at(
         &self,
         at @ (link, body): BodyIndex,
-        frames: &[LinkFrame<S::Vector>],
+        places: &[LinkPlace<S::Vector>],
     ) -> Result<(Posed<&S>, ScalarOf<S>), LinkageError> {
-        Ok((self.placed_at(link, body, &frames[link])?, self.error_at(at, frames)))
+        Ok((self.placed_at((link, body), places[link].pose.as_ref())?, self.error_at(at, places)))
     }
 
     /// By how much the place of a body may be wrong. A rotation that has drifted is replaced by the nearest one, which
     /// is no farther from it than the exact one.
-    fn error_at(&self, (link, body): BodyIndex, frames: &[LinkFrame<S::Vector>]) -> ScalarOf<S> {
-        let (frame, BoundingSphere { center, radius }) = (&frames[link], &self.skeleton.links[link].each[body]);
+    fn error_at(&self, (link, body): BodyIndex, places: &[LinkPlace<S::Vector>]) -> ScalarOf<S> {
+        let (frame, BoundingSphere { center, radius }) = (&places[link].frame, &self.skeleton.links[link].each[body]);
         let reach = center.norm() + *radius;
         raised(frame.error_of(reach) + frame.turn_error * reach)
     }
 
     /// How far the balls around two bodies are apart.
-    fn gap(&self, [a, b]: [BodyIndex; 2], frames: &[LinkFrame<S::Vector>]) -> ScalarOf<S> {
+    fn gap(&self, [a, b]: [BodyIndex; 2], places: &[LinkPlace<S::Vector>]) -> ScalarOf<S> {
         let [a, b] = [a, b].map(|(link, body)| {
             let ball = &self.skeleton.links[link].each[body];
-            (frames[link].of(ball.center), ball.radius)
+            (places[link].frame.of(ball.center), ball.radius)
         });
         let apart = (a.0 - b.0).norm();
         apart - raised(a.1 + b.1) - epsilons::<ScalarOf<S>>(8.0) * apart

@@ -1,6 +1,6 @@
 //! Where a frame is, and by how much rounding may have moved it.
 
-use convex_support::{InvalidShape, Matrix, Rotation, Scalar, Vector};
+use convex_support::{InvalidShape, Matrix, Point, Posed, Rotation, Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::Pose;
@@ -49,6 +49,11 @@ impl<V: Vector> LinkFrame<V> {
             turn_error: epsilons(units),
             ..Self::WORLD
         })
+    }
+
+    /// The pose of the bodies in this frame, checked once for all of them; `None` if it is not finite.
+    pub(super) fn pose(&self) -> Option<Posed<Point<V>>> {
+        Posed::from_matrix(Point::new(V::ZERO).ok()?, self.rotation, self.translation).ok()
     }
 
     /// Whether this is exactly the frame of the world.

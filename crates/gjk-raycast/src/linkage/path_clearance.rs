@@ -157,12 +157,10 @@ impl<S: SupportMap> Linkage<S> {
     ) -> ScalarOf<S> {
         let mut least = limit;
         for LinkView { link, base, route } in &self.skeleton.views {
-            let frame = route.place(edge, time).1;
+            let Some(pose) = route.place(edge, time).1.pose() else { continue };
             for shape in &self.bodies[*link] {
                 let options = DistanceOptions::new().with_limit(least);
-                let Ok(placed) = convex_support::Posed::from_matrix(shape, frame.rotation, frame.translation) else {
-                    continue;
-                };
+                let Ok(placed) = pose.with_shape(shape) else { continue };
                 let nearest = match base {
                     None => scene.nearest(&placed, options).nearest.map(|nearest| nearest.distance.distance),
                     Some(base) => self.bodies[*base]

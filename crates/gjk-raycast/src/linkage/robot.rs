@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use convex_support::numerics::bound::raised;
 use convex_support::{
-    Aabb, BoundingSphere, Core, Matrix as _, Posed, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere,
+    Aabb, BoundingSphere, Core, Matrix as _, Point, Posed, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere,
     support_value,
 };
 use num_traits::Float;
@@ -220,18 +220,17 @@ impl<S: SupportMap> Linkage<S> {
             return Err(LinkageError::NoSuchBody { link, body });
         }
         let (route, edge) = (&self.skeleton.views[link].route, PathEdge { from: values, to: values });
-        self.placed_at(link, body, &route.place(edge, Scalar::ZERO).1)
+        self.placed_at((link, body), route.place(edge, Scalar::ZERO).1.pose().as_ref())
     }
 
-    /// A body that exists, in the frame of its link.
+    /// A body that exists, in the pose of its link.
     pub(super) fn placed_at(
         &self,
-        link: usize,
-        body: usize,
-        frame: &LinkFrame<S::Vector>,
+        (link, body): (usize, usize),
+        pose: Option<&Posed<Point<S::Vector>>>,
     ) -> Result<Posed<&S>, LinkageError> {
-        let placed = Posed::from_matrix(&self.bodies[link][body], frame.rotation, frame.translation);
-        placed.map_err(|_| LinkageError::BodyNotFinite { link, body })
+        let placed = pose.and_then(|pose| pose.with_shape(&self.bodies[link][body]).ok());
+        placed.ok_or(LinkageError::BodyNotFinite { link, body })
     }
 
     /// A bound on how far any point of a link goes, if joint values change from `from` to `to`: in any direction, or
