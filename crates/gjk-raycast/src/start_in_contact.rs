@@ -136,7 +136,12 @@ impl<V: Vector> StartingPair<'_, V> {
             // if they cross before it, and then no look tells more.
             let least = if crossing > zero { before.at(crossing).min(after.at(crossing)) } else { after.gap };
             if least >= never {
-                return Some(Later::Never(if after.gap >= never { after.normal } else { before.normal }));
+                // A plane that is left, and keeps the shapes as far apart as they began, or else the one through the
+                // crossing of both lines, which is neither left nor closed in on.
+                let level = before.normal * -after.closing + after.normal * before.closing;
+                let is_kept = !(crossing > zero) || after.gap >= start.lower.min(self.target);
+                let best = if after.gap >= never { after.normal } else { before.normal };
+                return Some(Later::Never(if is_kept { best } else { level.unit().unwrap_or(best) }));
             }
             let is_smooth = look % 2 == 1 && after.time < V::Scalar::infinity();
             let level = before.time + (after.time - before.time) * (before.closing / closing);

@@ -2,10 +2,11 @@
 
 use convex_support::strategies::{AnyShape, combined, pose, primitive, primitive_3d};
 use convex_support::{
-    Affine, Ball, Cone, Cuboid, Cylinder, Difference, Matrix, Posed, Scalar, Segment, SupportMap, Vector, glam,
+    Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Matrix, Point, Posed, Scalar, Segment, SupportMap,
+    Vector, glam,
 };
 use gjk_raycast::laws::{self, Law, PairPlanes};
-use gjk_raycast::{MotionCastOptions, Ray, RigidMotion};
+use gjk_raycast::{LinearCastOptions, Motion, MotionCastOptions, Ray, RigidMotion, StartInContact};
 use proptest::prelude::*;
 
 type Shape<V> = Posed<AnyShape<V>>;
@@ -145,4 +146,24 @@ fn rays_that_end_before_an_edge_miss_by_a_plane_that_faces_them() {
     }
     of(&Cuboid::new(glam::DVec2::new(r, h)).expect("a cuboid"), [r, -h, 0.0], 0);
     of(&Cuboid::new(glam::DVec3::new(r, h, 1.0)).expect("a cuboid"), [-r, h, 0.1], 0);
+}
+
+/// A point leaves the end of a capsule that is nearly along its way, both far from the origin of the world: no plane
+/// across the way keeps them apart, and the miss is told by the plane through both that does.
+#[test]
+fn bodies_that_never_get_deeper_miss_by_a_plane_between_them() {
+    type V = glam::Vec2;
+    let at = Posed::new(
+        Point::new(V::new(47_032.273, -7_359.359)).expect("finite"),
+        -6.825_864_6,
+        V::new(12_942.549, 88_148.586),
+    );
+    let at = Posed::translated(at.expect("finite"), V::new(-1_113_857.1, 2_910_112.5)).expect("finite");
+    let capsule = Capsule::<V>::new(25.991_453, 1.005_753_9).expect("a capsule");
+    let turned = Posed::new(capsule, -4.840_330_3, V::ZERO).expect("finite");
+    let turned = Posed::translated(turned, V::new(-1_064_416.1, 2_967_665.8)).expect("finite");
+    let motion = Motion { velocity_a: V::NEG_X, velocity_b: V::ZERO };
+    let options = LinearCastOptions::default().with_start_in_contact(StartInContact::IfDeeper);
+    let report = laws::linear_cast(&at, &turned, motion, options, &[V::X, V::new(0.5, -0.25)]);
+    assert!(report.broken.is_empty(), "{report}");
 }
