@@ -7,6 +7,7 @@
 //! file and GJK.
 
 mod cores;
+#[cfg(feature = "alloc")]
 mod depth;
 mod distances;
 mod near;
@@ -122,6 +123,7 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
 ) -> Separation<V> {
     debug_assert_eq!(IS_DEPTH, wanted.is_depth(), "the constant must agree with the wanted answer");
     let (options, rare) = (&wanted.options, wanted.rare);
+    #[cfg(feature = "alloc")]
     if IS_DEPTH {
         // Rounded cores are mostly apart, which only a search can tell.
         let is_rounded = cores.radius() > Scalar::ZERO;
