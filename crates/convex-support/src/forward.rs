@@ -1,10 +1,5 @@
 //! Shapes that are another shape: references, boxes and shared pointers, and those that only hold one.
 
-use alloc::boxed::Box;
-use alloc::rc::Rc;
-#[cfg(target_has_atomic = "ptr")]
-use alloc::sync::Arc;
-
 use crate::{CrossedByLine, SupportMap};
 
 /// Implements [`SupportMap`] by forwarding every method, the provided ones too: `forward!([parameters] type as |this|
@@ -109,19 +104,35 @@ macro_rules! forward_line_crossing {
 pub(crate) use {forward, forward_line_crossing};
 
 forward!([S: SupportMap + ?Sized] &S as S::Vector, |pointer| (**pointer));
-forward!([S: SupportMap + ?Sized] Box<S> as S::Vector, |pointer| (**pointer));
-forward!([S: SupportMap + ?Sized] Rc<S> as S::Vector, |pointer| (**pointer));
-#[cfg(target_has_atomic = "ptr")]
-forward!([S: SupportMap + ?Sized] Arc<S> as S::Vector, |pointer| (**pointer));
-
 forward_line_crossing!([S: CrossedByLine + ?Sized] &S as S::Vector, |pointer| (**pointer));
-forward_line_crossing!([S: CrossedByLine + ?Sized] Box<S> as S::Vector, |pointer| (**pointer));
-forward_line_crossing!([S: CrossedByLine + ?Sized] Rc<S> as S::Vector, |pointer| (**pointer));
-#[cfg(target_has_atomic = "ptr")]
-forward_line_crossing!([S: CrossedByLine + ?Sized] Arc<S> as S::Vector, |pointer| (**pointer));
+
+/// Pointers to memory that an allocator gave.
+#[cfg(feature = "alloc")]
+mod allocated {
+    use alloc::boxed::Box;
+    use alloc::rc::Rc;
+    #[cfg(target_has_atomic = "ptr")]
+    use alloc::sync::Arc;
+
+    use crate::{CrossedByLine, SupportMap};
+
+    forward!([S: SupportMap + ?Sized] Box<S> as S::Vector, |pointer| (**pointer));
+    forward!([S: SupportMap + ?Sized] Rc<S> as S::Vector, |pointer| (**pointer));
+    #[cfg(target_has_atomic = "ptr")]
+    forward!([S: SupportMap + ?Sized] Arc<S> as S::Vector, |pointer| (**pointer));
+
+    forward_line_crossing!([S: CrossedByLine + ?Sized] Box<S> as S::Vector, |pointer| (**pointer));
+    forward_line_crossing!([S: CrossedByLine + ?Sized] Rc<S> as S::Vector, |pointer| (**pointer));
+    #[cfg(target_has_atomic = "ptr")]
+    forward_line_crossing!([S: CrossedByLine + ?Sized] Arc<S> as S::Vector, |pointer| (**pointer));
+}
 
 #[cfg(test)]
 mod tests {
+    use alloc::boxed::Box;
+    use alloc::rc::Rc;
+    use alloc::sync::Arc;
+
     use super::*;
     use crate::{Affine, Ball, Capsule, CoreKind, Hint, Posed, Rounded, closest_point, line_crossing, support_value};
     use glam::DVec3;

@@ -38,7 +38,9 @@
 //!
 //! # Features
 //! - `std` (default): square roots and the like by the processor's instructions; without it by the libm crate, for
-//!   `no_std` targets with `alloc`, to the same bits.
+//!   `no_std` targets, to the same bits.
+//! - `alloc` (with `std`): [`Polytope`], [`Bvh`], and shapes behind `Box`, `Rc` and `Arc`. Without it no allocator is
+//!   needed.
 //! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
 //!   instead.
 //! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices; and
@@ -68,6 +70,7 @@ compile_error!(
      has no such feature, turns on `glam-032` instead, and runs `cargo update --package glam@0.34 --precise 0.32.1`"
 );
 
+#[cfg(any(feature = "alloc", test))]
 extern crate alloc;
 #[cfg(any(feature = "std", test))]
 extern crate std;
@@ -75,6 +78,7 @@ extern crate std;
 mod angular_velocity;
 mod ball_support;
 mod bounds;
+#[cfg(feature = "alloc")]
 mod bvh;
 mod closest_point;
 mod combinators;
@@ -108,11 +112,10 @@ mod vector;
 pub use glam;
 
 pub use bounds::{Aabb, BoundingSphere, bounding_box, bounding_sphere};
-pub use bvh::nearest_pairs::NearestPairs;
-pub use bvh::pairs::PairSearch;
+#[cfg(feature = "alloc")]
 pub use bvh::{
     Bound, BoxDistance, Boxes, Bvh, CoarseBound, CoarseBoxDistance, CoarseSweptBox, CoarseUnit, Frame, SweptBox, WIDTH,
-    outer_box,
+    nearest_pairs::NearestPairs, outer_box, pairs::PairSearch,
 };
 pub use closest_point::closest_point;
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};
@@ -140,8 +143,10 @@ pub use parallelotope::Parallelotope;
 pub use scalar::Scalar;
 #[cfg(feature = "hull")]
 pub use shapes::Faceted;
+#[cfg(feature = "alloc")]
+pub use shapes::Polytope;
 pub use shapes::triangle_point::TriangleFeature;
-pub use shapes::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Segment, Triangle};
+pub use shapes::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Segment, Triangle};
 pub use support::{ScalarOf, SupportMap, support_value};
 pub use support_feature::{Feature, Rim};
 pub use vector::{AngularVelocity, Matrix, Rotation, Spin, Vector, Vector3};

@@ -79,8 +79,10 @@
 //!
 //! # Features
 //! - `std` (default): square roots and the like by the processor's instructions; without it by the libm crate, for
-//!   `no_std` targets with `alloc`, to the same bits. With it a thread keeps what its deepest query has allocated, so
+//!   `no_std` targets, to the same bits. With it a thread keeps what its deepest query has allocated, so
 //!   that the next ones allocate nothing.
+//! - `alloc` (with `std`): all questions but [`intersects`], [`distance`], [`ray_cast`], [`ray_exit`] and
+//!   [`iterative_ray_cast`]; without it no allocator is needed.
 //! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
 //!   instead.
 //! - `rayon`: `par_ray_casts`, `Among::par_ray_casts`, `Among::par_pairs_within`, `Among::par_contacts_within` and
@@ -132,8 +134,11 @@
 // On docs.rs, each item says which feature it needs.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+// Questions that need an allocator share much with the others.
+#![cfg_attr(not(feature = "alloc"), allow(dead_code, unused_imports, reason = "some questions are left out"))]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons are written so that NaN ends the loop they are in")]
 
+#[cfg(any(feature = "alloc", test))]
 extern crate alloc;
 #[cfg(any(feature = "std", test))]
 extern crate std;
@@ -146,39 +151,52 @@ mod axial;
 mod body;
 mod boxes;
 mod cast;
+#[cfg(feature = "alloc")]
 mod certificate;
+#[cfg(feature = "alloc")]
 mod contact;
 mod curvature;
 #[cfg(feature = "serde")]
 mod data;
+#[cfg(feature = "alloc")]
 mod derivative;
 mod distance;
 mod double;
 mod gjk;
+#[cfg(feature = "alloc")]
 mod growth_distance;
+#[cfg(feature = "alloc")]
 mod half_space;
 mod intersects;
 mod iterative_ray_cast;
 #[cfg(feature = "laws")]
 pub mod laws;
+#[cfg(feature = "alloc")]
 mod linear_cast;
+#[cfg(feature = "alloc")]
 mod linkage;
+#[cfg(feature = "alloc")]
 mod motion;
 mod observer;
 mod options;
 mod outcome;
+mod pair_gradient;
 #[cfg(feature = "paper")]
 pub mod paper;
 mod ray;
 mod ray_cast;
+#[cfg(feature = "alloc")]
 mod ray_casts;
 mod ray_exit;
+#[cfg(feature = "alloc")]
 mod scene;
 mod segments;
 mod separation;
 mod shape;
+#[cfg(feature = "alloc")]
 mod signed_distance;
 mod simplex;
+#[cfg(feature = "alloc")]
 mod start_in_contact;
 mod symmetric;
 mod unit;
@@ -187,26 +205,34 @@ mod warm_start;
 pub use convex_support;
 pub use convex_support::{MotionGradient, MotionHessian};
 
+#[cfg(feature = "alloc")]
 pub use certificate::{
     Certificate, WeightedSupport, distance_certificate, growth_distance_certificate, intersection_certificate,
     linear_cast_certificate, ray_cast_certificate,
 };
+#[cfg(feature = "alloc")]
 pub use contact::{Contact, ContactPoint, contact, contact_after};
+#[cfg(feature = "alloc")]
 pub use derivative::{
-    ClosestFeatures, ClosestVelocities, GrowthGradient, ImpactGradient, PairGradient, PairHessian, RayCastGradient,
+    ClosestFeatures, ClosestVelocities, GrowthGradient, ImpactGradient, PairHessian, RayCastGradient,
     RigidMotionGradient, Smoothness,
 };
 pub use distance::{DistanceOptions, FreeStep, distance, distance_with, map_distances_into};
+#[cfg(feature = "alloc")]
 pub use growth_distance::{GrowthDistance, GrowthError, GrowthOptions, growth_distance};
+#[cfg(feature = "alloc")]
 pub use half_space::HalfSpace;
 pub use intersects::{IntersectOptions, Intersection, intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
+#[cfg(feature = "alloc")]
 pub use linear_cast::{LinearCast, LinearCastOptions, Motion, linear_cast, linear_cast_with};
+#[cfg(feature = "alloc")]
 pub use linkage::{
     BodyPair, ConfigurationWorkspace, FreeBox, FreeInterval, Joint, JointBounds, JointBox, JointBoxOutcome, JointKind,
     JointState, JointTrajectory, Link, LinkClearance, LinkFrame, Linkage, LinkageError, Met, NearestOnPath, Path,
     PathClearance, PathContact, PathWorkspace,
 };
+#[cfg(feature = "alloc")]
 pub use motion::{
     ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate,
     MovingBall, Pose, RigidMotion, Trajectory, TurningPlane, motion_cast, motion_cast_with, motion_clearance,
@@ -214,20 +240,26 @@ pub use motion::{
 };
 pub use observer::{Iterate, Status};
 pub use outcome::{Cast, Impact, Miss, Outcome, RayCastError, StartInContact};
+pub use pair_gradient::PairGradient;
 pub use ray::{CastMethod, Ray, RayCast, RayCastOptions, RayHit};
 pub use ray_cast::{ray_cast, ray_cast_with};
+#[cfg(feature = "alloc")]
 pub use ray_casts::{RayEntry, ray_casts, ray_entries_into};
 #[cfg(feature = "rayon")]
 pub use ray_casts::{par_ray_casts, par_ray_entries_into};
 pub use ray_exit::{RayExit, ray_exit};
+#[cfg(feature = "alloc")]
 pub use scene::among::Among;
+#[cfg(feature = "alloc")]
 pub use scene::handle::BodyHandle;
+#[cfg(feature = "alloc")]
 pub use scene::{
     Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, Group, Instance, PairContact, PairDistance,
     PairImpact, Scene, SceneAnyHit, SceneAnyWithin, SceneCast, SceneDistance, SceneError, SceneFirstContact, SceneHits,
     SceneLinearCast, SceneMotionCast, ScenePair, SceneRayCast, SceneSignedDistance, Work,
 };
 pub use separation::{Distance, SignedDistance, SignedDistanceOptions};
+#[cfg(feature = "alloc")]
 pub use signed_distance::{signed_distance, signed_distance_with};
 pub use simplex::SubAlgorithm;
 pub use warm_start::WarmStart;

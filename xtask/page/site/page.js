@@ -3,8 +3,7 @@
 
 import { engine } from './engine.js';
 import { BODIES, QUESTIONS, copy, handle, plain } from './questions.js';
-import { HEIGHT, STYLE, View, WIDTH, arrow, bracket, cross, dot, f, gaps, grid, iterate, line, path, short } from './plane.js';
-import { Space } from './space.js';
+import { HEIGHT, STYLE, View, WIDTH, arrow, bracket, cross, dot, f, gaps, grid, halfPlane, iterate, line, path, short } from './plane.js';
 
 const $ = (id) => document.getElementById(id);
 const SVG = 'http://www.w3.org/2000/svg';
@@ -25,6 +24,9 @@ let space = null;
 
 const question = () => QUESTIONS[query.query];
 const isSpatial = () => (reply?.drawing?.dimension ?? 2) === 3;
+// What moves by itself: a cast in the plane without turning shows its way by its steps.
+const hasClock = () => query.query === 'motion_cast' || (query.query === 'linear_cast' && isSpatial());
+const isFloor = (key) => query[key]?.type === 'half_space';
 
 // ---- state: the line, the address, the fields ----
 
@@ -70,7 +72,10 @@ function engineFor() {
 }
 
 let loading = null;
-const loadSpace = () => (loading ??= engine('space').then((found) => (spatial = found)));
+const loadSpace = () => (loading ??= Promise.all([engine('space'), import('./space.js')]).then(([found, { Space }]) => {
+  space = new Space($('space'));
+  spatial = found;
+}));
 
 function lost(why) {
   loading = null;
@@ -133,7 +138,8 @@ function extent() {
     case 'motion_cast': return [...(outlines.a ?? []), ...(outlines.b ?? []), ...moved('a', answer.time ?? query.max_time)];
     case 'margin': return [query.e1, query.e2].flatMap((e) => around(e));
     case 'enclosing_ellipsoid': return [...(query.points ?? []), ...around(answer)];
-    default: return [...(outlines.a ?? []), ...(outlines.b ?? [])];
+    // Of a floor, what lies below the body.
+    default: return [...(outlines.a ?? []), ...(outlines.b ?? []), ...(isFloor('b') && answer.point_b ? [answer.point_b] : [])];
   }
 }
 
@@ -161,7 +167,8 @@ function moveTo(key, p, time) {
 }
 
 function fit() {
-  if (!reply || reply.of !== query.query || isSpatial()) return;
+  if (!reply || reply.of !== query.query) return;
+  if (isSpatial()) return draw();
   views.bodies = new View(points(), { width: $('panes').classList.contains('single') && innerWidth > 700 ? 960 : WIDTH });
   views.search = new View(searched());
   draw();
@@ -182,12 +189,12 @@ function draw() {
   const k = now(), step = steps[k], isEnd = k === steps.length - 1;
   $('step-name').textContent = isEnd && steps.length > 1 ? `the answer` : steps.length > 1 ? `${step?.name} of ${steps.length - 1}` : 'no steps';
   if (answer.error) $('step-name').textContent = '';
-  const single = isSpatial() || !['distance', 'signed_distance', 'linear_cast', 'motion_cast'].includes(query.query);
+  const single = isSpatial() || isFloor('b') || !['distance', 'signed_distance', 'linear_cast', 'motion_cast'].includes(query.query);
   const width = single && innerWidth > 700 ? 960 : WIDTH;
   if (views.bodies?.width !== width && views.bodies) views.bodies = new View(points(), { width });
   $('panes').classList.toggle('single', single);
   $('search-pane').hidden = single;
-  $('clock').hidden = isSpatial() || query.query !== 'motion_cast';
+  $('clock').hidden = !hasClock() || Boolean(answer.error);
   $('space').hidden = !isSpatial();
   $('bodies').toggleAttribute('hidden', isSpatial());
   $('bodies').setAttribute('viewBox', `0 0 ${width} ${HEIGHT}`);
@@ -195,7 +202,7 @@ function draw() {
   const attempt = (part) => { try { part(); } catch (why) { if (!answer.error) throw why; } };
   if (isSpatial()) {
     $('bodies-caption').textContent = 'Drag the picture to turn it; pinch, or use the wheel, to zoom';
-    space.show(query, answer);
+    space?.show(query, answer, hasClock() ? { time: Number($('time').value), end: Number($('time').max) } : null);
   } else {
     attempt(() => drawBodies(answer, drawing.outlines ?? {}, seen, step, isEnd));
     if (!single) attempt(() => drawSearch(answer, drawing.outlines ?? {}, seen, step, isEnd));
@@ -213,7 +220,7 @@ function draw() {
 
 function drawBodies(answer, outlines, seen, step, isEnd) {
   const view = (views.bodies ??= new View(points()));
-  let out = grid(view), over = '';
+  let out = grid(view) + (isFloor('b') ? halfPlane(view, query.b, 'b') : ''), over = '';
   const outline = (key, name, at) => outlines[key] && `<path class="body ${name}" d="${path(view, outlines[key].map(at ?? ((p) => p)))}"/>`;
   switch (query.query) {
     case 'distance': case 'signed_distance':
@@ -571,7 +578,33 @@ function setTime(time) {
   $('time-name').textContent = short(time, 5);
 }
 
+// Time runs from where it is, or from its beginning, to its end: all of it in four seconds.
+let running = 0;
+function run() {
+  if (running) return halt();
+  const time = $('time'), end = Number(time.max), start = performance.now();
+  const from = Number(time.value) < end ? Number(time.value) : 0;
+  const tick = (at) => {
+    const t = Math.min(end, from + (end * Math.max(at - start, 0)) / 4000);
+    setTime(t);
+    draw();
+    if (t < end) running = requestAnimationFrame(tick);
+    else halt();
+  };
+  running = requestAnimationFrame(tick);
+  $('run').textContent = '❚❚';
+  $('run').setAttribute('aria-label', 'Stop time');
+}
+
+function halt() {
+  cancelAnimationFrame(running);
+  running = 0;
+  $('run').textContent = '▶';
+  $('run').setAttribute('aria-label', 'Let time run');
+}
+
 function stop() {
+  halt();
   clearInterval(playing);
   playing = null;
   $('play').textContent = '▶';
@@ -590,7 +623,8 @@ $('step').addEventListener('input', () => (stop(), go(now())));
 $('back').addEventListener('click', () => (stop(), go(now() - 1)));
 $('on').addEventListener('click', () => (stop(), go(now() + 1)));
 $('play').addEventListener('click', play);
-$('time').addEventListener('input', () => (setTime(Number($('time').value)), draw()));
+$('time').addEventListener('input', () => (halt(), setTime(Number($('time').value)), draw()));
+$('run').addEventListener('click', run);
 document.addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest('textarea, select, input, button, summary')) return;
   if (event.key === ' ') event.preventDefault(), play();
@@ -646,9 +680,10 @@ function fillOptions() {
   const story = query._issue ? `<strong>${escape(query._title)}.</strong> Reported at ${escape(query._issue)}: ${escape(query._reported)}. The truth: ${escape(truth())} (${escape(query._truth)}).` : '';
   $('story').innerHTML = story;
   $('story').hidden = !story;
-  if (query.query === 'motion_cast') {
-    $('time').max = query.max_time;
-    setTime(reply?.answer?.time ?? 0);
+  if (hasClock()) {
+    const { time } = reply?.answer ?? {};
+    $('time').max = query.max_time ?? time ?? 1;
+    setTime(time ?? 0);
   }
 }
 
@@ -761,7 +796,6 @@ function open() {
 document.head.append(Object.assign(document.createElement('style'), { textContent: STYLE }));
 try {
   plane = await engine('plane');
-  space = new Space($('space'));
   $('loading').hidden = true;
   $('main').hidden = false;
   open();

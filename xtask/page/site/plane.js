@@ -85,6 +85,16 @@ function across(view, p, n, name, label) {
   return `<path class="line ${name}" stroke-dasharray="7 5" d="${path(view, [end(-1), end(1)], false)}"/>${text}`;
 }
 
+// The half-plane n·x ≤ c, as far as the picture goes.
+export function halfPlane(view, { normal: n, offset: c }, name) {
+  const square = n[0] * n[0] + n[1] * n[1];
+  if (!(square > 0)) return '';
+  const length = Math.sqrt(square), u = [n[0] / length, n[1] / length], away = (c - n[0] * view.x - n[1] * view.y) / length;
+  const reach = (view.width + view.height) / view.unit;
+  const corner = (s, depth) => [view.x + (away - depth) * u[0] - s * reach * u[1], view.y + (away - depth) * u[1] + s * reach * u[0]];
+  return `<path class="body ${name}" d="${path(view, [corner(-1, 0), corner(1, 0), corner(1, 2 * reach), corner(-1, 2 * reach)])}"/>`;
+}
+
 export function grid(view) {
   const step = 10 ** Math.ceil(Math.log10(36 / view.unit));
   const unit = [step / 5, step / 2, step].find((s) => s * view.unit >= 36) ?? step;

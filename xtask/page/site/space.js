@@ -10,6 +10,24 @@ function begin({ direction }) {
   return [Math.atan2(x, z) + 0.6, Math.max(-1, Math.min(1, Math.asin(y) + 0.3)), 1];
 }
 
+// A body at a time of its motion: turned about the centre of that, and moved.
+function placed(query, key, time) {
+  const body = query[key];
+  if (!body || body.type === 'half_space') return body;
+  const still = [0, 0, 0];
+  const motion = query.query === 'linear_cast' ? { velocity: query[`velocity_${key}`] } : query[`motion_${key}`];
+  const { velocity: v = still, angular_velocity: w = still, center: c = still } = motion ?? {};
+  const speed = Math.hypot(...w), [x, y, z] = speed > 0 ? w.map((each) => each / speed) : still;
+  const [sin, cos, along] = [Math.sin(speed * time), Math.cos(speed * time), c[0] * x + c[1] * y + c[2] * z];
+  const across = [y * c[2] - z * c[1], z * c[0] - x * c[2], x * c[1] - y * c[0]];
+  const turned = [x, y, z].map((axis, i) => cos * c[i] + sin * across[i] + (1 - cos) * along * axis);
+  const half = Math.sin((speed * time) / 2);
+  return {
+    type: 'posed', of: body, rotation: [x * half, y * half, z * half, Math.cos((speed * time) / 2)],
+    translation: c.map((each, i) => each - turned[i] + v[i] * time),
+  };
+}
+
 export class Space {
   constructor(canvas) {
     this.canvas = canvas;
@@ -58,17 +76,24 @@ export class Space {
     this.draw();
   }
 
-  // The bodies of a query, with the points of its answer.
-  show(query, answer) {
+  // The bodies of a query, with the points of its answer; of moving ones at a time, seen as far as they go until the end.
+  show(query, answer, clock) {
     const marks = [answer.point_a, answer.point_b, answer.point].filter(Array.isArray);
     const ways = [];
     if (query.source && query.direction) ways.push([query.source, answer.point ?? query.source.map((x, i) => x + 1e3 * query.direction[i])]);
     if (answer.point_a && !answer.overlap) ways.push([answer.point_a, answer.point_b]);
     if (query.e1) query = { ...query, a: { type: 'ellipsoid', ...query.e1 }, b: { type: 'ellipsoid', ...query.e2 } };
+    const also = [];
+    if (clock) {
+      also.push(...[0, clock.end].flatMap((time) => ['a', 'b'].map((body) => placed(query, body, time))));
+      const center = query.motion_a?.center ?? query.a?.translation ?? [0, 0, 0], v = query.velocity_a ?? query.motion_a?.velocity;
+      if (v?.some(Boolean)) ways.push([center, center.map((x, i) => x + v[i] * (answer.time ?? clock.end))]);
+      query = { ...query, a: placed(query, 'a', clock.time), b: placed(query, 'b', clock.time) };
+    }
     const key = JSON.stringify([query, marks]);
     if (key === this.key) return this.draw();
     if (query.query !== this.query?.query || query.id !== this.query?.id) this.view = begin(query);
-    Object.assign(this, { key, query: plain(query), marks, ways, ellipsoid: Array.isArray(answer.axes) ? answer : null });
+    Object.assign(this, { key, query: plain(query), marks, ways, also, ellipsoid: Array.isArray(answer.axes) ? answer : null });
     this.draw();
   }
 
@@ -81,10 +106,10 @@ export class Space {
   // Asks for the next picture: a coarse one of the newest view first, then finer ones of the same.
   next() {
     if (this.isBusy || !this.wanted) return;
-    const { canvas, query, marks, ways, ellipsoid, view } = this;
+    const { canvas, query, marks, ways, also, ellipsoid, view } = this;
     const width = Math.round(Math.min(canvas.clientWidth || 480, 960)), height = Math.round(canvas.clientHeight || 400);
     const size = [Math.max(2, Math.floor(width / this.wanted)), Math.max(2, Math.floor(height / this.wanted))];
-    const more = { _view: [...view], _size: size, _marks: marks, _ways: ways };
+    const more = { _view: [...view], _size: size, _marks: marks, _ways: ways, _also: also };
     if (ellipsoid) more._ellipsoid = { center: ellipsoid.center, semi_axes: ellipsoid.semi_axes, rotation: ellipsoid.rotation };
     this.worker ??= this.begin();
     this.isBusy = true;

@@ -82,12 +82,23 @@ fn thing(body: Body, colour: [f64; 3]) -> Thing {
 
 /// What is seen, and the part of space that is: its middle and radius.
 fn things(query: &Object, meshes: &Meshes) -> (Vec<Thing>, (DVec3, f64)) {
-    let read = |key: &str| {
-        let shape = Shape::read(Written::new(query.get(key)?.as_object()?, &Dimension::default())).ok()?;
-        closed(&shape).map(Body::Closed).or_else(|| shape.build(key, meshes).ok().map(Body::Searched))
+    let read = |body: &Value, colour| {
+        let shape = Shape::read(Written::new(body.as_object()?, &Dimension::default())).ok()?;
+        let body = closed(&shape).map(Body::Closed).or_else(|| shape.build("", meshes).ok().map(Body::Searched))?;
+        Some(thing(body, colour))
     };
-    let mut things: Vec<Thing> = COLOURS.iter().filter_map(|(key, colour)| Some(thing(read(key)?, *colour))).collect();
-    let bodies = span(&things);
+    let mut things: Vec<Thing> = COLOURS.iter().filter_map(|(key, colour)| read(query.get(*key)?, *colour)).collect();
+    // Where moving bodies begin and end is seen at any time.
+    let begun = things.len();
+    things.extend(query.get("_also").and_then(Value::as_array).into_iter().flatten().filter_map(|b| read(b, POINT)));
+    let mut bodies = span(&things);
+    things.truncate(begun);
+    for (key, colour) in COLOURS {
+        if let Some((slab, seen)) = query.get(key).and_then(|floor| floor_below(floor, bodies)) {
+            things.push(thing(Body::Closed(Box::new(slab)), colour));
+            bodies = seen;
+        }
+    }
     let dot = |at: &Value, radius: f64, colour| {
         let ball = Posed::translated(Ball::new(radius).ok()?, vector::<DVec3>(Some(at))).ok()?;
         Some(thing(Body::Closed(Box::new(ball)), colour))
@@ -113,6 +124,19 @@ fn things(query: &Object, meshes: &Meshes) -> (Vec<Thing>, (DVec3, f64)) {
     }
     let seen = if query.contains_key("points") { span(&things) } else { bodies };
     (things, seen)
+}
+
+/// A half-space, as a slab that reaches beyond the picture of bodies, and what is seen of both.
+fn floor_below(floor: &Value, (middle, radius): (DVec3, f64)) -> Option<(Posed<Cuboid<DVec3>>, (DVec3, f64))> {
+    let normal = vector::<DVec3>(floor.get("normal"));
+    let (up, offset) = (normal.try_normalize()?, floor.get("offset")?.as_f64()? / normal.length());
+    let height = up.dot(middle) - offset;
+    let (foot, half) = (middle - up * height, DVec3::new(20.0, 0.02, 20.0) * radius);
+    let turn = DQuat::from_rotation_arc(DVec3::Y, up);
+    let slab = Posed::new(Cuboid::new(half).ok()?, turn, foot - up * half.y).ok()?;
+    let reach = (height.abs() + radius) / 2.0;
+    let seen = if reach > radius { (foot + up * (reach * height.signum()), reach) } else { (middle, radius) };
+    Some((slab, seen))
 }
 
 /// The middle of what is seen, and its radius. A body many times as large as the smallest one does not count: a floor

@@ -158,7 +158,8 @@ pub(super) fn measure(folder: &Path) -> Result<String, String> {
 
 fn run(name: &str, import: &str, body: &str, folder: &Path) -> Result<Cost, String> {
     let failed = |why: &dyn std::fmt::Display| format!("cannot measure {name}: {why}");
-    let import = (!import.is_empty()).then_some((import, "\"f64\""));
+    let features = if import == "gjk-raycast" { "\"alloc\", \"f64\"" } else { "\"f64\"" };
+    let import = (!import.is_empty()).then_some((import, features));
     let source = HARNESS.replace("BODY", body).replace("REPETITIONS", &REPETITIONS.to_string());
     let here = write_program(folder, name, import, RUNTIME, &source).map_err(|why| failed(&why))?;
     fs::write(here.join("build.rs"), BUILD).map_err(|why| failed(&why))?;

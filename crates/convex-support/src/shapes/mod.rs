@@ -10,6 +10,7 @@ mod ellipsoid;
 pub(crate) mod planar_triangle;
 mod point;
 mod points;
+#[cfg(feature = "alloc")]
 mod polytope;
 mod segment;
 mod triangle;
@@ -27,6 +28,7 @@ pub use ellipsoid::Ellipsoid;
 pub use point::Point;
 #[cfg(feature = "hull")]
 pub use polytope::Faceted;
+#[cfg(feature = "alloc")]
 pub use polytope::Polytope;
 pub use segment::Segment;
 pub use triangle::Triangle;

@@ -6,8 +6,6 @@
 //! a ray is in it, at the latest, where it meets a point made of support points. The searches choose where to look,
 //! and may be wrong: their results count only as they are measured here.
 
-use alloc::boxed::Box;
-
 use convex_support::{Scalar, Vector};
 use num_traits::Float;
 
@@ -91,7 +89,7 @@ pub(super) struct Bracket<'a, V: Vector> {
     pub(super) scale: V::Scalar,
     observer: Observer<'a, V>,
     /// The bracket that the observer sees, if there is one.
-    watched: Option<Box<Watched<V>>>,
+    watched: Option<Watched<V>>,
     /// The number of support points taken.
     pub(super) iterations: usize,
     /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative
@@ -345,9 +343,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
     fn show(&mut self, n: V, point: V, v: V, simplex: &[V]) {
         let x = self.x();
         let (line, radius) = (self.ray.line, self.radius);
-        let watched = self.watched.get_or_insert_with(|| Box::new(Watched::new(line)));
-        watched.count(n, point, radius);
-        let (low, high) = watched.narrow(self.low.bound.at, self.high.at);
+        let watched = self.watched.get_or_insert_with(|| Watched::new(line));
+        let [low, high] = watched.narrow([self.low.bound.at, self.high.at], n, point, radius);
         let mut seen = [V::ZERO; MAX_POINTS];
         for (s, p) in seen.iter_mut().zip(simplex) {
             *s = x - *p;

@@ -10,6 +10,10 @@ mod outline;
 mod portal;
 mod ray_frame;
 mod start;
+#[cfg(feature = "alloc")]
+mod watched;
+#[cfg(not(feature = "alloc"))]
+#[path = "unwatched.rs"]
 mod watched;
 
 use convex_support::{Scalar, Vector, compiled_table};

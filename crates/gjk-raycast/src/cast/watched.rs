@@ -6,6 +6,7 @@
 //! of the body, and where the line runs through the triangle of three such points (in the plane: between two), it is in
 //! the body. Nothing of this is computed without an observer, and no search depends on it.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use convex_support::{Scalar, Vector};
@@ -23,8 +24,11 @@ type OffLine<S> = (Across<S>, S);
 /// Two points (in the plane: one, twice) that have the line within their hull with a new one, and where it is in it.
 type Enclosing<S> = ([OffLine<S>; 2], S);
 
+/// What an observer is shown of the bounds. It is apart from the bracket, since few casts have an observer.
+pub(super) struct Watched<V: Vector>(Box<Seen<V>>);
+
 /// Both bounds by all support points so far, as parameters of the line.
-pub(super) struct Watched<V: Vector> {
+struct Seen<V: Vector> {
     line: Line<V>,
     axes: [V; 2],
     /// The corners of the nearest triangle first, and then the last points.
@@ -37,19 +41,28 @@ pub(super) struct Watched<V: Vector> {
 impl<V: Vector> Watched<V> {
     pub(super) fn new(line: Line<V>) -> Self {
         let (axes, unknown) = (axes_across(line.direction), V::Scalar::infinity());
-        Self { line, axes, points: Vec::new(), corners: 0, lower: -unknown, upper: unknown }
+        Self(Box::new(Seen { line, axes, points: Vec::new(), corners: 0, lower: -unknown, upper: unknown }))
     }
 
+    /// Both bounds, by those of the search and all support points so far, of which the last is the one of the core along
+    /// `n`.
+    pub(super) fn narrow(&mut self, [low, high]: [V::Scalar; 2], n: V, core: V, radius: V::Scalar) -> [V::Scalar; 2] {
+        self.0.count(n, core, radius);
+        self.0.narrow(low, high).into()
+    }
+}
+
+impl<V: Vector> Seen<V> {
     /// Both bounds, by those of the search and all support points so far. They only ever narrow, and do not pass one
     /// another by rounding.
-    pub(super) fn narrow(&mut self, low: V::Scalar, high: V::Scalar) -> (V::Scalar, V::Scalar) {
+    fn narrow(&mut self, low: V::Scalar, high: V::Scalar) -> (V::Scalar, V::Scalar) {
         self.lower = self.lower.max(low.min(self.upper));
         self.upper = self.upper.min(high.max(self.lower));
         (self.lower, self.upper)
     }
 
     /// Counts the support point of a core along `n`, of a body that is the core swept by a ball.
-    pub(super) fn count(&mut self, n: V, core: V, radius: V::Scalar) {
+    fn count(&mut self, n: V, core: V, radius: V::Scalar) {
         let Some(unit) = n.unit() else { return };
         let (point, line) = (core + unit * radius, self.line);
         let slope = -unit.dot(line.direction);

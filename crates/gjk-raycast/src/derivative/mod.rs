@@ -20,7 +20,7 @@ mod smoothness;
 mod velocities;
 
 pub use closest_features::ClosestFeatures;
-pub use gradient::{GrowthGradient, ImpactGradient, PairGradient, RayCastGradient, RigidMotionGradient};
+pub use gradient::{GrowthGradient, ImpactGradient, RayCastGradient, RigidMotionGradient};
 pub use hessian::PairHessian;
 pub use smoothness::Smoothness;
 pub use velocities::ClosestVelocities;

@@ -8,6 +8,7 @@
 
 mod apart;
 mod cores;
+#[cfg(feature = "alloc")]
 mod depth;
 mod distances;
 mod near;
@@ -142,6 +143,7 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
         cores.iterations += state.iterations;
         (state, end)
     } else {
+        #[cfg(feature = "alloc")]
         if IS_DEPTH {
             if let Begun::Boxes(parts) = begun
                 && let Some(known) = cores.closed_form(parts, options.axis)

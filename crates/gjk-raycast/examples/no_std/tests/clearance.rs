@@ -1,6 +1,7 @@
 //! On a machine with a standard library: the rates are those of differences.
 
-use no_std_example::clearance;
+use gjk_raycast::convex_support::glam::Vec3;
+use no_std_example::{clearance, seen_at};
 
 #[test]
 fn the_rates_are_those_of_differences() {
@@ -21,4 +22,17 @@ fn the_rates_are_those_of_differences() {
 #[test]
 fn an_angle_that_is_none_is_an_error() {
     assert!(clearance(f32::NAN, 0.0).is_err(), "NaN");
+}
+
+#[test]
+fn nothing_is_allocated() {
+    let counted = allocation_counter::measure(|| {
+        for step in 0..64 {
+            let gap = clearance(0.1 * step as f32, 0.3).expect("finite");
+            assert!(gap.at_least <= gap.distance, "{gap:?}");
+        }
+        let seen = seen_at(Vec3::new(0.0, 0.4, 0.0), Vec3::X).expect("finite").expect("it is in the way");
+        assert!((seen - 0.35).abs() < 1e-6, "{seen}");
+    });
+    assert_eq!(counted.count_total, 0, "allocations");
 }
