@@ -1,6 +1,8 @@
 //! Runs one row of the workloads once, for callgrind to count: `instructions ROW`, or `instructions` to list the rows.
 //!
-//! `benches/instructions.sh` runs them all and compares with the committed table.
+//! `benches/instructions.sh` runs them all and compares with the committed table. `instructions --addresses` prints where
+//! the code begins that is run once between the inputs and the end, and where that which follows it; `benches/blocked.sh`
+//! counts between them.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "printing is what it is for")]
 
 use std::process::ExitCode;
@@ -201,12 +203,23 @@ fn main() -> ExitCode {
         ROWS.iter().for_each(|(name, _)| println!("{name}"));
         return ExitCode::SUCCESS;
     };
+    if wanted == "--addresses" {
+        println!("{:p} {:p}", counted as fn(&Solver), done as fn());
+        return ExitCode::SUCCESS;
+    }
     let Some((_, solver)) = ROWS.iter().find(|(name, _)| *name == wanted) else {
         eprintln!("no row is called {wanted:?}");
         return ExitCode::FAILURE;
     };
     counted(&solver());
+    done();
     ExitCode::SUCCESS
+}
+
+/// What runs after [`counted`].
+#[inline(never)]
+fn done() {
+    std::hint::black_box(());
 }
 
 /// What callgrind counts; making the inputs is left out.

@@ -58,7 +58,7 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     match plainly(target, ray, &options, true) {
         Some(answer) => Ok(answer),
-        None => searched(target, ray.by_coordinates(), options, Observer::none()),
+        None => searched(target, ray.source, ray.direction, options, Observer::none()),
     }
 }
 
@@ -73,7 +73,7 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     options: RayCastOptions<S::Vector>,
     mut observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
-    searched(target, ray, options, Observer::new(&mut observer))
+    searched(target, ray.source, ray.direction, options, Observer::new(&mut observer))
 }
 
 /// The cast by the certain crossing of the shape in plain numbers, if there is one; if `is_quick`, by the part of it
@@ -97,14 +97,17 @@ fn plainly<S: SupportMap + ?Sized>(
     certain(target.certain_crossing(line)?, ray, options)
 }
 
-/// The cast if its answer is not quick.
+/// The cast if its answer is not quick. Each vector of the ray is passed by itself: of a ray that is written to memory
+/// in pieces and then read in others, the processor waits for the pieces.
 #[inline(never)]
 fn searched<S: SupportMap + ?Sized>(
     target: &S,
-    ray: Ray<S::Vector>,
+    source: S::Vector,
+    direction: S::Vector,
     options: RayCastOptions<S::Vector>,
     mut observer: Observer<'_, S::Vector>,
 ) -> Result<RayCast<S::Vector>, RayCastError> {
+    let ray = Ray { source, direction };
     if let Some(answer) = plainly(target, ray, &options, false) {
         show(&answer, &mut Single::new(target), ray, &mut observer);
         return Ok(answer);

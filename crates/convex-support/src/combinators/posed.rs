@@ -328,7 +328,7 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         // A ball, whichever way it is turned.
         if core.origin == S::Vector::ZERO && core.kind == CoreKind::Point(S::Vector::ZERO) {
             let line = line.sweeping(core.radius);
-            return NearLine::new(line, self.translation, size)?.ball_or_clear_miss(line);
+            return NearLine::new(line, self.translation, size)?.swept_point(line);
         }
         let turned = self.frame(&core, size);
         let near = NearLine::new(line, turned.center, size)?.at_foot();

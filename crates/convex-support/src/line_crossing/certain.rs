@@ -274,15 +274,19 @@ impl<V: Vector> NearLine<V> {
         ss * dd - sd * sd > (rr + margin) * dd
     }
 
-    /// A ball about zero: most rays that miss it clearly miss it.
+    /// A ball about zero, for a line as it was asked about: most rays that miss a ball clearly miss it, and of a quick
+    /// line no other miss is told.
     #[inline(always)]
-    pub(crate) fn ball_or_clear_miss(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
-        if line.is_quick & (line.error == V::Scalar::ZERO) && self.clearly_passes(line.radius) {
-            let Self { source, direction, .. } = *self;
-            let chord = super::ball::chord(line.radius, source, direction, direction.length_squared().recip());
+    pub(crate) fn swept_point(&self, asked: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        let (radius, recip) = (asked.radius, self.direction.length_squared().recip());
+        if !(asked.is_quick & (asked.error == V::Scalar::ZERO)) {
+            return self.ball(radius);
+        }
+        let chord = super::ball::chord(radius, self.source, self.direction, recip);
+        if self.clearly_passes(radius) {
             return Some(CertainCrossing::Misses(chord.nearest));
         }
-        self.ball(line.radius)
+        self.enters_ball(&chord, radius, recip)
     }
 
     /// A ball about zero.
@@ -293,6 +297,12 @@ impl<V: Vector> NearLine<V> {
         if chord.is_past(radius, self.error, -V::Scalar::ZERO) {
             return Some(CertainCrossing::Misses(chord.nearest));
         }
+        self.enters_ball(&chord, radius, recip)
+    }
+
+    /// Where the line enters a ball about zero that cuts a chord out of it; `recip` is `1/|direction|²`.
+    #[inline(always)]
+    fn enters_ball(&self, chord: &Chord<V>, radius: V::Scalar, recip: V::Scalar) -> Option<CertainCrossing<V>> {
         let slack = chord.slack(radius, self.error, recip, least_chord::<V::Scalar>())?;
         let entry = chord.ends().0;
         Some(self.enters([entry - slack, entry, entry + slack], chord.normal(radius, self.direction, recip)))
@@ -717,7 +727,7 @@ mod tests {
             clear += 1;
             near += u32::from(off < 1e-4);
             assert!(off > 0.0, "{off} {source} {direction}");
-            let known = |line| NearLine::new(line, Vec3A::ZERO, radius)?.ball_or_clear_miss(line);
+            let known = |line| NearLine::new(line, Vec3A::ZERO, radius)?.swept_point(line);
             let by_chord = known(line);
             assert!(matches!(by_chord, Some(CertainCrossing::Misses(_))), "{off} {source} {direction}");
             assert_eq!(known(LineQuery { is_quick: true, ..line }), by_chord, "{off} {source} {direction}");

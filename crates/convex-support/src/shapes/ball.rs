@@ -69,7 +69,7 @@ impl<V: Vector> SupportMap for Ball<V> {
             return closely(self, line);
         }
         let line = line.sweeping(self.radius);
-        NearLine::new(line, V::ZERO, line.radius)?.ball_or_clear_miss(line)
+        NearLine::new(line, V::ZERO, line.radius)?.swept_point(line)
     }
 
     fn close_crossing(&self, line: &CloseLine) -> Close {

@@ -66,7 +66,7 @@ impl<V: Vector> SupportMap for Point<V> {
         if line.is_close {
             return closely(self, line);
         }
-        NearLine::new(line, self.at, line.radius)?.ball_or_clear_miss(line)
+        NearLine::new(line, self.at, line.radius)?.swept_point(line)
     }
 
     fn close_crossing(&self, line: &CloseLine) -> Close {

@@ -22,6 +22,7 @@ use num_traits::Float as _;
 use crate::body::{CastBody, PointPair};
 use crate::observer::Observer;
 use crate::options::{MayBeLean, Rare};
+use crate::shape::Shape;
 use crate::simplex::Simplex;
 use crate::{CastMethod, Miss, Outcome, RayCastOptions, Status};
 use algorithm_3::{algorithm_3, draw_near, touch_beside};
@@ -31,15 +32,13 @@ pub(crate) use certain::{certain, certain_closely, is_plain, last_number, show};
 pub(crate) use line::{CastRay, LocalRay, Part};
 use outline::bound_entry;
 use portal::portal;
-use start::SettleFn;
-pub(crate) use start::{RayBodies, settle_ends};
 
 /// What a lean ray cast leaves out: the searches that are quicker than Algorithm 3 alone, and the second measurement
 /// where they leave a doubt.
 #[allow(clippy::type_complexity, reason = "the type is written once")]
 pub(crate) struct RareInRayCasts<V: Vector> {
     cast_by: CastFn<V>,
-    settle: SettleFn<V>,
+    settle_start: SettleFn<V>,
     settle_end: SettleFn<V>,
     touch_beside: fn(&mut Bracket<'_, V>, &Simplex<V>, V, V::Scalar, Option<V>) -> Option<RayContact<V>>,
 }
@@ -47,11 +46,13 @@ pub(crate) struct RareInRayCasts<V: Vector> {
 type CastFn<V> =
     fn(&mut dyn CastBody<Vector = V>, CastRay<V>, &RayCastOptions<V>, &mut Observer<'_, V>) -> ObstacleCast<V>;
 
+type SettleFn<V> = fn(&mut ObstacleCast<V>, RayBodies<'_, V>, &RayCastOptions<V>);
+
 impl<V: Vector> MayBeLean for RayCastOptions<V> {
     type Table = RareInRayCasts<V>;
     const TABLE: Self::Table = RareInRayCasts {
         cast_by: cast_by::<V, true>,
-        settle: start::settle,
+        settle_start: start::settle_start,
         settle_end: start::settle_end,
         touch_beside,
     };
@@ -230,4 +231,56 @@ fn conclude<V: Vector>(
     };
     let (iterations, scale, narrow) = (bracket.iterations, bracket.scale, bracket.narrow() * bracket.scale);
     ObstacleCast { outcome, lower, upper, status, iterations, scale, narrow }
+}
+
+/// The bodies of a ray, for a second measurement.
+#[derive(Clone, Copy)]
+pub(crate) struct RayBodies<'s, V: Vector> {
+    /// The target, which is swept by a ball, its skin.
+    pub(crate) a: Shape<'s, V>,
+    pub(crate) skin: V::Scalar,
+    /// The shape, or the point at the source, whose motion is the ray.
+    pub(crate) b: Shape<'s, V>,
+    pub(crate) direction: V,
+    /// A bound on the error of the direction, as a part of its length.
+    pub(crate) direction_error: V::Scalar,
+}
+
+/// Decides about a hit that may be at the source, or about a search that stalled before it left the source; and about
+/// one that may be behind the end of the ray.
+#[inline(always)]
+pub(crate) fn settle_ends<V: Vector>(
+    cast: &mut ObstacleCast<V>,
+    bodies: RayBodies<'_, V>,
+    options: &RayCastOptions<V>,
+) {
+    let rare = |cast: &ObstacleCast<V>| options.rare.0.filter(|_| cast.iterations < options.max_iterations);
+    if cast.is_to_be_settled()
+        && let Some(rare) = rare(cast)
+    {
+        (rare.settle_start)(cast, bodies, options);
+    }
+    let end = options.max_lambda;
+    if cast.lower <= end
+        && end < cast.upper
+        && cast.upper < V::Scalar::infinity()
+        && let Some(rare) = rare(cast)
+    {
+        (rare.settle_end)(cast, bodies, options);
+    }
+    cast.upper = cast.outcome.until(end, cast.upper, |hit| hit.lambda);
+}
+
+impl<V: Vector> ObstacleCast<V> {
+    /// Whether it hits at the source, or stalled there, and is not known to begin inside.
+    #[inline(always)]
+    fn is_to_be_settled(&self) -> bool {
+        let zero = V::Scalar::ZERO;
+        let may_be_at_start = match &self.outcome {
+            Outcome::Hit(_) => true,
+            Outcome::Undecided => self.status == Status::Stalled,
+            Outcome::Miss(_) => false,
+        };
+        may_be_at_start && self.lower == zero && self.upper > zero
+    }
 }

@@ -10,57 +10,21 @@ use convex_support::numerics::twofold::{dot_minus, two_product};
 use convex_support::{Posed, Rounded, Scalar, Vector};
 use num_traits::Float;
 
-use super::{CastHit, ObstacleCast};
+use super::{CastHit, ObstacleCast, RayBodies};
 use crate::body::PointPair;
 use crate::gjk::Frame;
 use crate::separation::{FromContact, NearContact, look_after, near_contact_of};
 use crate::shape::{Shape, WithoutLines};
 use crate::{Miss, Outcome, RayCastOptions, Status};
 
-/// The bodies of a ray, for a second measurement.
-#[derive(Clone, Copy)]
-pub(crate) struct RayBodies<'s, V: Vector> {
-    /// The target, which is swept by a ball, its skin.
-    pub(crate) a: Shape<'s, V>,
-    pub(crate) skin: V::Scalar,
-    /// The shape, or the point at the source, whose motion is the ray.
-    pub(crate) b: Shape<'s, V>,
-    pub(crate) direction: V,
-    /// A bound on the error of the direction, as a part of its length.
-    pub(crate) direction_error: V::Scalar,
-}
-
-/// Decides about a hit that may be at the source, or about a search that stalled before it left the source; and about
-/// one that may be behind the end of the ray.
-#[inline(always)]
-pub(crate) fn settle_ends<V: Vector>(
+/// Decides by the measured gap of the bodies where the cast begins.
+#[cold]
+#[inline(never)]
+pub(super) fn settle_start<V: Vector>(
     cast: &mut ObstacleCast<V>,
     bodies: RayBodies<'_, V>,
     options: &RayCastOptions<V>,
 ) {
-    let rare = |cast: &ObstacleCast<V>| options.rare.0.filter(|_| cast.iterations < options.max_iterations);
-    if cast.is_to_be_settled()
-        && let Some(rare) = rare(cast)
-    {
-        (rare.settle)(cast, bodies, options);
-    }
-    let end = options.max_lambda;
-    if cast.lower <= end
-        && end < cast.upper
-        && cast.upper < Float::infinity()
-        && let Some(rare) = rare(cast)
-    {
-        (rare.settle_end)(cast, bodies, options);
-    }
-    cast.upper = cast.outcome.until(end, cast.upper, |hit| hit.lambda);
-}
-
-pub(super) type SettleFn<V> = fn(&mut ObstacleCast<V>, RayBodies<'_, V>, &RayCastOptions<V>);
-
-/// Decides by the measured gap of the bodies where the cast begins.
-#[cold]
-#[inline(never)]
-pub(super) fn settle<V: Vector>(cast: &mut ObstacleCast<V>, bodies: RayBodies<'_, V>, options: &RayCastOptions<V>) {
     let RayBodies { a, skin, b, direction, .. } = bodies;
     let Ok(a) = Rounded::new(a, skin) else { return };
     let (zero, a) = (V::Scalar::ZERO, WithoutLines(&a));
@@ -295,18 +259,6 @@ fn entry<V: Vector>(
 }
 
 impl<V: Vector> ObstacleCast<V> {
-    /// Whether it hits at the source, or stalled there, and is not known to begin inside.
-    #[inline(always)]
-    fn is_to_be_settled(&self) -> bool {
-        let zero = V::Scalar::ZERO;
-        let may_be_at_start = match &self.outcome {
-            Outcome::Hit(_) => true,
-            Outcome::Undecided => self.status == Status::Stalled,
-            Outcome::Miss(_) => false,
-        };
-        may_be_at_start && self.lower == zero && self.upper > zero
-    }
-
     fn miss(&mut self, axis: V) {
         (self.lower, self.upper) = (Float::infinity(), Float::infinity());
         (self.outcome, self.status) = (Outcome::Miss(Miss { axis }), Status::Converged);
