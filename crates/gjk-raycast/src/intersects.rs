@@ -141,10 +141,7 @@ fn watched<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>(
     if shortest.is_some_and(|v| v.length() + (rounding(size) + pair.error()) <= pair.radius()) {
         return Intersection { overlap: true, axis: None, status: Status::Converged, iterations: 0 };
     }
-    let first = match options.axis.or(shortest) {
-        Some(axis) if is_moderate(axis.length_squared()) => axis,
-        axis => first_direction(axis, offset),
-    };
+    let first = first_direction(options.axis.or(shortest), offset);
     let mut known = None;
     if is_moderate(size) && options.max_iterations > 0 {
         let point = pair.support(-first).0;

@@ -182,9 +182,9 @@ impl<V: Vector> Separation<V> {
     }
 }
 
-/// [`signed_distance`] for searches in time. Of bodies near contact its bounds have the errors of GJK, because it leaves
-/// out the second measurement: a search in time asks about the same bodies again a moment later, and needs exact numbers
-/// of the last of these times only.
+/// [`signed_distance`] for searches in time. Of bodies near contact its bounds have the errors of GJK, because it
+/// leaves out the second measurement: a search in time asks about the same bodies again a moment later, and needs exact
+/// numbers of the last of these times only.
 #[inline]
 pub(crate) fn rough_signed_distance<V: Vector>(
     shapes: &dyn Shapes<Vector = V>,

@@ -9,7 +9,7 @@ use num_traits::Float as _;
 
 use crate::body::{CastBody as _, Pair, PointPair, ScalarFrom, Shapes, TracedSupport};
 use crate::observer::Observer;
-use crate::unit::{lost_to_underflow, moderate, power_of_two_near, reciprocal_of_power};
+use crate::unit::{is_moderate, lost_to_underflow, moderate, power_of_two_near, reciprocal_of_power};
 use crate::{Status, SubAlgorithm};
 use next_direction::NextDirection;
 pub(crate) use state::{Gjk, NEAR};
@@ -100,6 +100,14 @@ impl<V: Vector> GjkOptions<V> {
 /// The first direction: the axis of an earlier query, or from one origin to the other.
 #[inline(always)]
 pub(crate) fn first_direction<V: Vector>(axis: Option<V>, offset: V) -> V {
+    // An optional vector would go through memory, and the search wait for it.
+    let usual = axis.unwrap_or(offset);
+    if is_moderate(usual.length_squared()) { usual } else { unusual_direction(axis, offset) }
+}
+
+#[cold]
+#[inline(never)]
+fn unusual_direction<V: Vector>(axis: Option<V>, offset: V) -> V {
     axis.and_then(moderate).or_else(|| moderate(offset)).unwrap_or_else(|| Vector::axis(0))
 }
 
@@ -137,8 +145,9 @@ struct Direction<V: Vector> {
 /// lower one is that of a plane through a support point, and the upper one is measured again before it counts.
 ///
 /// `known` is the support point along the first direction, if there is one. The state has
-/// [begun](Gjk::begin_at_closest), or has corners of its own.
-#[inline]
+/// [begun](Gjk::begin_at_closest), or has corners of its own. Not compiled into its callers: it is most of the code of
+/// each of them.
+#[inline(never)]
 pub(crate) fn gjk<B: TracedSupport>(
     state: &mut Gjk<B::Vector>,
     body: &mut B,

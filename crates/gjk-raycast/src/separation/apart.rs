@@ -178,8 +178,8 @@ pub(super) fn measured<V: Vector>(
 }
 
 /// A bound on the error of points of the difference of two cores of the given size, as a length, in the world's unit:
-/// no less than any [`Uncertainty`](super::Uncertainty), since no sum of products of coordinates is more than the product of the lengths,
-/// and the offset of the origins loses half an ε of its own.
+/// no less than any [`Uncertainty`](super::Uncertainty), since no sum of products of coordinates is more than the
+/// product of the lengths, and the offset of the origins loses half an ε of its own.
 #[inline(always)]
 pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
     pair: &Pair<'_, T>,

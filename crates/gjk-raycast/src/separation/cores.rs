@@ -77,7 +77,7 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.uncertainty = Some(known.with(self.lost_in_offset.abs()));
     }
 
-    /// Whether bodies whose cores are so far apart are nearer to contact than a few errors.
+    /// Whether bodies are within a few errors of contact, if the distance of their cores is `length`.
     #[inline(always)]
     pub(super) fn is_near(&self, length: V::Scalar) -> bool {
         (length - self.frame.radius).abs() < self.frame.error * Scalar::from_f64(NEAR)
@@ -124,7 +124,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         (self.frame.error * Scalar::from_f64(6.0) + self.size * part) * self.scale()
     }
 
-    /// The signed distance of bodies whose cores are so deep in one another, in the world's unit.
+    /// The signed distance of the bodies, in the world's unit, if the depth of their cores is `depth`. The depth of
+    /// cores that are apart is minus their distance.
     #[inline(always)]
     pub(super) fn gap(&self, depth: V::Scalar) -> V::Scalar {
         -(depth * self.scale()) - self.radius()
@@ -191,14 +192,14 @@ impl<'a, V: Vector> Cores<'a, V> {
         Some((points, points.a - points.b + offset))
     }
 
-    /// How far apart the cores are of bodies that are as far apart as is asked for.
+    /// The distance of the cores beyond which the search may stop: that of bodies whose distance is the wanted limit.
     pub(super) fn limit(&self, wanted: &Wanted<V>) -> V::Scalar {
         wanted.options.limit * self.frame.per_unit + self.frame.radius
     }
 
     /// GJK on the cores, from their closest points where these are known, until their distance is known as well as is
-    /// wanted. The search also ends where the bodies meet to rounding; but where the depth is wanted, bodies whose radii
-    /// overlap have it by the distance of their cores, so that only cores which meet end the search.
+    /// wanted. The search also ends where the bodies meet to rounding. But where the depth is wanted, bodies whose
+    /// radii overlap have it by the distance of their cores, so that only cores which meet end the search.
     #[inline]
     pub(super) fn approach(
         &mut self,

@@ -16,18 +16,19 @@ use crate::shape::Shape;
 use crate::simplex::{MAX_POINTS, cross};
 use crate::symmetric::axes_across;
 
-/// The vector from a point of the difference to zero, which is near it.
+/// What bounds the vector from a point of the difference to zero, where zero is near the point: the vector is
+/// `c − a·n`, with `a` from 0 to `along`, and with `c` no longer than `across`.
 pub(crate) struct FromContact<V: Vector> {
-    /// The unit vector into the difference. Against it the vector is no longer than `along`, and not along it.
+    /// The unit vector into the difference.
     pub(crate) n: V,
     pub(crate) along: V::Scalar,
-    /// A bound on its length across that direction.
     pub(crate) across: V::Scalar,
+    /// A bound on the length of the whole vector.
     pub(crate) length: V::Scalar,
 }
 
 impl<V: Vector> FromContact<V> {
-    /// A bound on its component along a unit vector.
+    /// A bound on the component of the vector along a unit vector `u`.
     fn reach(&self, u: V) -> V::Scalar {
         let part = self.along * (-self.n.dot(u)).max(V::Scalar::ZERO) + roundings(16.0, self.along) + self.across;
         part.min(self.length)
@@ -39,7 +40,8 @@ pub(crate) struct After<V: Vector> {
     /// A lower bound on their distance along an axis, a unit vector from the second body to the first.
     pub(crate) lower: V::Scalar,
     pub(crate) axis: V,
-    /// How many times the vector from contact is certainly in the difference; not positive if zero may not be.
+    /// The factor up to which multiples of the vector from contact certainly end in the difference; not positive where
+    /// zero may be outside.
     pub(crate) times: V::Scalar,
     pub(crate) iterations: usize,
 }
