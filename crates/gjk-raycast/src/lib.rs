@@ -203,9 +203,9 @@ pub use intersects::{IntersectOptions, Intersection, intersects, intersects_with
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{LinearCast, LinearCastOptions, Motion, linear_cast, linear_cast_with};
 pub use linkage::{
-    BodyPair, ConfigurationWorkspace, FreeBox, FreeInterval, Joint, JointBounds, JointBox, JointBoxOutcome, JointKind,
-    JointState, JointTrajectory, Link, LinkClearance, LinkFrame, Linkage, LinkageError, Met, NearestOnPath, Path,
-    PathClearance, PathContact, PathWorkspace,
+    BodyPair, ConfigurationWorkspace, FaceStop, FreeBox, FreeInterval, GrownBox, Joint, JointBounds, JointBox,
+    JointBoxOutcome, JointKind, JointState, JointTrajectory, Link, LinkClearance, LinkFrame, Linkage, LinkageError,
+    Met, NearestOnPath, Path, PathClearance, PathContact, PathWorkspace,
 };
 pub use motion::{
     ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate,
