@@ -228,9 +228,9 @@ pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{LinearCast, LinearCastOptions, Motion, linear_cast, linear_cast_with};
 #[cfg(feature = "alloc")]
 pub use linkage::{
-    BodyPair, ConfigurationWorkspace, FreeBox, FreeInterval, Joint, JointBounds, JointBox, JointBoxOutcome, JointKind,
-    JointState, JointTrajectory, Link, LinkClearance, LinkFrame, Linkage, LinkageError, Met, NearestOnPath, Path,
-    PathClearance, PathContact, PathWorkspace,
+    BodyPair, ConfigurationWorkspace, FaceStop, FreeBox, FreeInterval, GrownBox, Joint, JointBounds, JointBox,
+    JointBoxOutcome, JointKind, JointState, JointTrajectory, Link, LinkClearance, LinkFrame, Linkage, LinkageError,
+    Met, NearestOnPath, Path, PathClearance, PathContact, PathWorkspace,
 };
 #[cfg(feature = "alloc")]
 pub use motion::{

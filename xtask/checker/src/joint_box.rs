@@ -20,18 +20,28 @@ const CLAIMS: &[(&str, Check<Case>)] = &[
     ("obstacle", Case::named),
     ("other_link", Case::named),
     ("other_body", Case::named),
-    ("boxes", |_, value| value.as_u64().map(|_| true).ok_or_else(|| "it is no number of boxes".to_owned())),
+    ("boxes", |_, value| boxes(value)),
 ];
 
 /// The fields of the answer that a pair of links says itself.
 const OF_PAIR: &[&str] = &["link", "obstacle", "other_link"];
 
+/// What those of a box that was grown claim.
+fn claims_of_grown<'t>() -> [(&'static str, Check<Grown<'t>>); 3] {
+    [("grown", Grown::grown), ("stops", Grown::stops), ("boxes", |_, value| boxes(value))]
+}
+
+/// A number of parts of boxes, which says nothing of the robot.
+fn boxes(value: &Value) -> Finding {
+    value.as_u64().map(|_| true).ok_or_else(|| "it is no number of boxes".to_owned())
+}
+
 /// The fields of the question beside those of what is asked about.
-const FIELDS: &[&str] = &["box", "target_distance"];
+const FIELDS: &[&str] = &["box", "target_distance", "grow"];
 
 /// What the certificate of a `joint_box` proves.
 pub(crate) fn judge(line: &Value, answer: &Value, certificate: &Value, reader: &Reader<'_>) -> Result<Proof, Unread> {
-    only(certificate, "the certificate", &[&["plane", "points", "free"]])?;
+    only(certificate, "the certificate", &[&["plane", "points", "free", "stops"]])?;
     let pair = line.get("pair").map(links).transpose()?;
     let around = match pair {
         Some(pair) => {
@@ -44,11 +54,17 @@ pub(crate) fn judge(line: &Value, answer: &Value, certificate: &Value, reader: &
         }
     };
     let target = target_distance(line, reader)?;
-    let whole = intervals(field(line, "box")?, reader)?;
-    if whole.len() != around.robot.values {
+    let limits = intervals(field(line, "box")?, reader)?;
+    if limits.len() != around.robot.values {
         return Err("the box is not of this robot".to_owned());
     }
-    let meets = flag(field(answer, "meets")?)?;
+    let grow = line.get("grow").map(|values| numbers(values, reader)).transpose()?;
+    if grow.is_some() && pair.is_some() {
+        return Err("grow does not stand beside pair".to_owned());
+    }
+    // What is claimed to be free: all of the box, or what was grown in it.
+    let whole = if grow.is_some() { intervals(field(answer, "grown")?, reader)? } else { limits.clone() };
+    let meets = if grow.is_some() { false } else { flag(field(answer, "meets")?)? };
     let mut parts = Parts::of(!meets);
     // The bodies of a pair are named without their links.
     let who = |object: &Value| match pair {
@@ -83,6 +99,12 @@ pub(crate) fn judge(line: &Value, answer: &Value, certificate: &Value, reader: &
         let none = Vec::new();
         around.asked().all(|who| is_covered(&whole, &boxes.get(&who).unwrap_or(&none).iter().collect::<Vec<_>>()))
     };
+    if let Some(values) = grow {
+        let grown =
+            Grown { around: &around, reader, certificate, target, values, limits, grown: whole, is_covered: is_so };
+        let required = ["grown", "stops"];
+        return Ok(parts.proof(of_fields(answer, &claims_of_grown(), &required, |check, value| check(&grown, value))));
+    }
     let required: &[&str] = match (meets, pair) {
         (false, _) => &["meets"],
         (true, None) => &["meets", "values", "link", "body"],
@@ -91,6 +113,78 @@ pub(crate) fn judge(line: &Value, answer: &Value, certificate: &Value, reader: &
     let table: Vec<_> = CLAIMS.iter().copied().filter(|(name, _)| pair.is_none() || !OF_PAIR.contains(name)).collect();
     let case = Case { meets, is_so };
     Ok(parts.proof(of_fields(answer, &table, required, |check, value| check(&case, value))))
+}
+
+/// A box that was grown, and what is proved of it.
+struct Grown<'t> {
+    around: &'t Surrounded,
+    reader: &'t Reader<'t>,
+    certificate: &'t Value,
+    target: Interval,
+    values: Vec<f64>,
+    limits: Vec<[f64; 2]>,
+    grown: Vec<[f64; 2]>,
+    is_covered: bool,
+}
+
+impl Grown<'_> {
+    /// It is free, within its limits, and around the values.
+    fn grown(&self, _: &Value) -> Finding {
+        let Self { values, limits, grown, .. } = self;
+        if grown.len() != limits.len() || values.len() != limits.len() {
+            return Err("it is not of this robot".to_owned());
+        }
+        let is_within = |(ends, limits): (&[f64; 2], &[f64; 2])| limits[0] <= ends[0] && ends[1] <= limits[1];
+        let is_around = |(ends, value): (&[f64; 2], &f64)| ends[0] <= *value && *value <= ends[1];
+        if !(grown.iter().zip(limits).all(is_within) && grown.iter().zip(values).all(is_around)) {
+            return Ok(false);
+        }
+        within_rounding(self.is_covered, NOT_COVERED)
+    }
+
+    /// A face that a limit stopped is at it. Bodies that stopped one are asked about; and if values are told, these are
+    /// beyond the face alone, and the bodies meet there. That no more could be proved says nothing of the robot.
+    fn stops(&self, value: &Value) -> Finding {
+        let stops = listed(value)?;
+        if stops.len() != 2 * self.grown.len() {
+            return Err("there are not two for each joint".to_owned());
+        }
+        for (face, stop) in stops.iter().enumerate() {
+            let (column, end) = (face / 2, face % 2);
+            let (at, limit) = (self.grown[column][end], self.limits[column][end]);
+            match stop.get("by").and_then(Value::as_str) {
+                Some("limit") if at == limit => only(stop, "a stop", &[&["by"]])?,
+                Some("limit") => return Ok(false),
+                Some("work") => only(stop, "a stop", &[&["by"]])?,
+                Some("bodies") => {
+                    only(stop, "a stop", &[&["by", "values"], Who::FIELDS])?;
+                    let who = Who::read(stop)?;
+                    self.around.check_asked(who)?;
+                    let Some(values) = stop.get("values") else { continue };
+                    let values = numbers(values, self.reader)?;
+                    let is_there = |(i, value): (usize, &f64)| {
+                        let [low, high] = self.grown[i];
+                        match (i == column, end) {
+                            (false, _) => (low..=high).contains(value),
+                            (true, 0) => self.limits[i][0] <= *value && *value < low,
+                            (true, _) => high < *value && *value <= self.limits[i][1],
+                        }
+                    };
+                    if values.len() != self.grown.len() || !values.iter().enumerate().all(is_there) {
+                        return Ok(false);
+                    }
+                    let (body, met) =
+                        self.around.placed(who, &values.into_iter().map(Interval::from).collect::<Vec<_>>())?;
+                    let proof = field(self.certificate, "stops")?.get(face).ok_or("there is no proof of it")?;
+                    if !met.distance(body, proof, self.reader)?.is_at_most(&self.target) {
+                        return Err(NOT_MET.to_owned());
+                    }
+                }
+                _ => return Err("what stopped a face is none that is known".to_owned()),
+            }
+        }
+        Ok(true)
+    }
 }
 
 /// An answer about a box of joint values.

@@ -1,7 +1,7 @@
 //! `joint_box`.
 
 use convex_support::{Scalar, Vector};
-use gjk_raycast::{BodyPair, FreeBox, JointBoxOutcome, Linkage, Scene};
+use gjk_raycast::{BodyPair, FaceStop, FreeBox, JointBoxOutcome, Linkage, Scene};
 
 use super::path::{Surrounded, meeting_of, of_what};
 use super::{Ask, How, Query, Question, meeting, scalar};
@@ -20,6 +20,8 @@ pub(super) struct JointBox {
     about: About,
     intervals: Vec<[f64; 2]>,
     target_distance: f64,
+    /// The joint values to grow a free box around, within the box.
+    grow: Option<Vec<f64>>,
 }
 
 /// Which links, and what they may meet.
@@ -29,13 +31,13 @@ enum About {
 }
 
 impl Query for JointBox {
-    const FIELDS: Names = &["joints", "links", "pair", "obstacles", "self", "box", "target_distance"];
+    const FIELDS: Names = &["joints", "links", "pair", "obstacles", "self", "box", "target_distance", "grow"];
 
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
         let about = match fields.only_one_of(&["pair", "obstacles"])? {
             "obstacles" => About::Scene(Surrounded::read(fields)?),
-            _ if fields.has("self") => {
-                let message = "self stands beside obstacles, which may be empty, and not beside pair";
+            _ if fields.has("self") || fields.has("grow") => {
+                let message = "self and grow stand beside obstacles, which may be empty, and not beside pair";
                 return Err(Problem::new(Kind::UnknownField, message.to_owned()));
             }
             _ => About::Pair(linkage::Linkage::read(fields)?, fields.get("pair")?),
@@ -44,6 +46,7 @@ impl Query for JointBox {
             about,
             intervals: fields.get("box")?,
             target_distance: fields.not_negative("target_distance")?.unwrap_or(0.0),
+            grow: fields.maybe("grow")?,
         })
     }
 
@@ -57,7 +60,14 @@ impl Query for JointBox {
             }
             About::Scene(robot) => {
                 let (robot, scene) = robot.build(how.meshes)?;
-                Box::new(EverAmong::<V> { robot, scene, intervals, target_distance })
+                let among = EverAmong::<V> { robot, scene, intervals, target_distance };
+                match &self.grow {
+                    None => Box::new(among),
+                    Some(values) => {
+                        let values = values.iter().map(|&value| scalar::<V>(value)).collect();
+                        Box::new(Grown::<V> { among, values })
+                    }
+                }
             }
         })
     }
@@ -115,12 +125,8 @@ impl<V: Space> Question for EverAmong<V> {
     }
 
     fn prove(&self) -> Result<(Self::Solution, Option<Answer>), Problem> {
-        let Self { robot, scene, intervals, target_distance } = self;
-        let mut free = Vec::new();
-        let show =
-            |part: FreeBox<'_, V, BodyPair>| free.push(free_part(&part, of_bodies(Answer::default(), part.bodies)));
-        let solution =
-            robot.joint_box_among_with(scene, intervals, *target_distance, MAX_BOXES, show).map_err(problem)?;
+        let Self { robot, scene, .. } = self;
+        let (solution, free) = self.watched(&self.intervals)?;
         let met = match &solution.outcome {
             JointBoxOutcome::Meets { values, bodies } => meeting_of(robot, scene, values, *bodies).unwrap_or_default(),
             _ => Answer::default(),
@@ -130,6 +136,69 @@ impl<V: Space> Question for EverAmong<V> {
 
     fn answer(&self, answer: Self::Solution) -> Result<Answer, Problem> {
         of_search(answer, of_bodies)
+    }
+}
+
+impl<V: Space> EverAmong<V> {
+    /// The answer about a box, and the parts that prove that it is free.
+    #[allow(clippy::type_complexity, reason = "the type is written once")]
+    fn watched(
+        &self,
+        intervals: &[[V::Scalar; 2]],
+    ) -> Result<(gjk_raycast::JointBox<V::Scalar, BodyPair>, Vec<Answer>), Problem> {
+        let mut free = Vec::new();
+        let show =
+            |part: FreeBox<'_, V, BodyPair>| free.push(free_part(&part, of_bodies(Answer::default(), part.bodies)));
+        let found = self.robot.joint_box_among_with(&self.scene, intervals, self.target_distance, MAX_BOXES, show);
+        Ok((found.map_err(problem)?, free))
+    }
+}
+
+/// A box to be grown around joint values.
+struct Grown<V: Vector> {
+    among: EverAmong<V>,
+    values: Vec<V::Scalar>,
+}
+
+impl<V: Space> Question for Grown<V> {
+    type Solution = gjk_raycast::GrownBox<V::Scalar>;
+
+    fn solve(&self) -> Result<Self::Solution, Problem> {
+        let EverAmong { robot, scene, intervals, target_distance } = &self.among;
+        robot.grown_box(&self.values, scene, intervals, *target_distance, MAX_BOXES).map_err(problem)
+    }
+
+    fn prove(&self) -> Result<(Self::Solution, Option<Answer>), Problem> {
+        let grown = self.solve()?;
+        let EverAmong { robot, scene, .. } = &self.among;
+        let (_, free) = self.among.watched(&grown.joint_box)?;
+        let met = |stop: &FaceStop<V::Scalar>| match stop {
+            FaceStop::Bodies { bodies, values: Some(values) } => {
+                meeting_of(robot, scene, values, *bodies).unwrap_or_default()
+            }
+            _ => Answer::default(),
+        };
+        let stops = Field::Answers(grown.stops.iter().flatten().map(met).collect());
+        Ok((grown, Some(Answer::default().with("free", Field::Answers(free)).with("stops", stops))))
+    }
+
+    fn answer(&self, grown: Self::Solution) -> Result<Answer, Problem> {
+        let stops = grown.stops.into_iter().flatten().map(|stop| match stop {
+            FaceStop::Limit => Answer::default().with("by", Field::Text("limit")),
+            FaceStop::Work => Answer::default().with("by", Field::Text("work")),
+            FaceStop::Bodies { bodies, values } => {
+                let answer = of_bodies(Answer::default().with("by", Field::Text("bodies")), bodies);
+                match values {
+                    Some(values) => answer.with("values", Field::Numbers(values.into_iter().map(Number::of).collect())),
+                    None => answer,
+                }
+            }
+        });
+        let intervals = grown.joint_box.into_iter().map(|ends| ends.map(Number::of).to_vec()).collect();
+        Ok(Answer::default()
+            .with("grown", Field::Rows(intervals))
+            .with("stops", Field::Answers(stops.collect()))
+            .with("boxes", Field::Count(grown.boxes)))
     }
 }
 

@@ -29,6 +29,7 @@ pub(super) fn prove_for(kinds: &[&str], seconds: u64, seed: u64, told: impl Fn(&
             let [kind, precision] = ["query", "precision"].map(|name| query[name].as_str().unwrap_or_default());
             let among = query.get("clearance").map_or("", |_| " clearance");
             let among = query.get("obstacles").filter(|_| kind == "joint_box").map_or(among, |_| " among");
+            let among = query.get("grow").map_or(among, |_| " grown");
             let mut name = format!("{kind}{among} {precision}");
             let Some(line) = certified(query.to_string().as_bytes(), &meshes) else {
                 tally.entry(name).or_default().unanswered += 1;
@@ -129,7 +130,9 @@ fn boxed(path: Value, rng: &mut Rng) -> Value {
     let values = path["waypoints"][0].as_array().into_iter().flatten().filter_map(Value::as_f64);
     let joint_box: Vec<_> = values.map(|value| (value, 0.25 * value.abs() * rng.unit())).collect();
     let joint_box: Vec<_> = joint_box.into_iter().map(|(value, half)| [value - half, value + half]).collect();
-    without(with(with(path, "query", "joint_box"), "box", json!(joint_box)), &["waypoints"])
+    // At times a box is grown around the waypoint.
+    let grow = if rng.below(3) == 0 { with(path.clone(), "grow", path["waypoints"][0].clone()) } else { path };
+    without(with(with(grow, "query", "joint_box"), "box", json!(joint_box)), &["waypoints"])
 }
 
 fn without(mut query: Value, names: &[&str]) -> Value {

@@ -612,12 +612,31 @@ fn spoilt_clearances(line: &Value, rng: &mut Rng) -> Vec<(String, Value)> {
     with(&[(&claim, "nobody_knows", json!(1))]);
     with(&[("", "nobody_knows", json!(1))]);
     with(&[("", "precision", json!("f16"))]);
+    for (i, [low, high]) in
+        answer["grown"].as_array().into_iter().flatten().map(|ends| [&ends[0], &ends[1]]).enumerate()
+    {
+        // Beyond the limits, and beside the values.
+        let mut spoilt = answer["grown"].clone();
+        spoilt[i] = json!([line["box"][i][0].as_f64().expect("a limit") - 1.0, high]);
+        with(&[(&claim, "grown", spoilt.clone())]);
+        spoilt[i] = json!([high.as_f64().expect("a face") + 1.0, high.as_f64().expect("a face") + 2.0]);
+        with(&[(&claim, "grown", spoilt)]);
+        let mut stops = answer["stops"].clone();
+        if stops[2 * i]["by"] != "limit" && low != &line["box"][i][0] {
+            stops[2 * i] = json!({"by": "limit"});
+            with(&[(&claim, "stops", stops)]);
+        }
+    }
     if let Some(meets) = answer["meets"].as_bool() {
         with(&[(&claim, "meets", json!(!meets))]);
     }
     // What is proved to be free at once needs no parts.
     let parts = at(&proof)["free"].as_array().map_or(0, Vec::len) as u64;
-    if parts > 0 && (number("lower").is_some_and(|lower| lower > 0.0) || answer["meets"] == json!(false)) {
+    if parts > 0
+        && (number("lower").is_some_and(|lower| lower > 0.0)
+            || answer["meets"] == json!(false)
+            || answer.get("grown").is_some())
+    {
         let mut line = line.clone();
         let free = line.pointer_mut(&proof).expect("a proof")["free"].as_array_mut().expect("a list");
         let part = free.remove(rng.below(parts) as usize);

@@ -116,7 +116,10 @@ pub fn problem(why: LinkageError) -> Problem {
         LinkageError::Value { .. } | LinkageError::Option(_) | LinkageError::BodyNotFinite { .. } => Kind::NonFinite,
         LinkageError::Axis { .. } => Kind::ZeroDirection,
         LinkageError::Count { .. } => Kind::DimensionMismatch,
-        LinkageError::EmptyPath | LinkageError::NoSuchJoint { .. } | LinkageError::Pair { .. } => Kind::Parse,
+        LinkageError::EmptyPath
+        | LinkageError::NoSuchJoint { .. }
+        | LinkageError::Pair { .. }
+        | LinkageError::OutsideLimits { .. } => Kind::Parse,
         _ => Kind::InvalidShape,
     };
     Problem::new(kind, why.to_string())

@@ -5,6 +5,7 @@ use core::fmt::{self, Display, Formatter};
 
 use convex_support::InvalidShape;
 
+use super::path_answer::{BodyPair, Met};
 use crate::RayCastError;
 
 /// Why a linkage, a path or a box of joint values was refused.
@@ -97,6 +98,17 @@ pub enum LinkageError {
         /// The index of the value.
         value: usize,
     },
+    /// The joint value around which a free box is to grow is not within its limits.
+    OutsideLimits {
+        /// The index of the value.
+        value: usize,
+    },
+    /// At the joint values around which a free box is to grow, two bodies are not certainly farther apart than the
+    /// target distance.
+    NotFree {
+        /// Which bodies they are.
+        bodies: BodyPair,
+    },
     /// An option is NaN, or the target distance infinite.
     Option(RayCastError),
 }
@@ -124,6 +136,16 @@ impl Display for LinkageError {
             Self::Value { waypoint, value } => write!(f, "value {value} of waypoint {waypoint} is not finite"),
             Self::Bounds { edge, value } => write!(f, "a bound for value {value} of edge {edge} is none"),
             Self::Interval { value } => write!(f, "the interval of value {value} ends before it begins"),
+            Self::OutsideLimits { value } => write!(f, "value {value} is not within its limits"),
+            Self::NotFree { bodies: BodyPair { link, body, met } } => {
+                write!(f, "body {body} of link {link} is not certainly free of ")?;
+                match met {
+                    Met::Obstacle(obstacle) => write!(f, "obstacle {obstacle}"),
+                    Met::Member { obstacle, member } => write!(f, "member {member} of obstacle {obstacle}"),
+                    Met::Link { link, body } => write!(f, "body {body} of link {link}"),
+                }?;
+                f.write_str(" at the values to grow around")
+            }
             Self::Option(why) => write!(f, "{why}"),
         }
     }

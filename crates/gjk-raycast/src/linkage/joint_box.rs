@@ -37,7 +37,7 @@ use super::joint::{JointStage, MovingFrame};
 use super::joint_trajectory::{JointBounds, JointState};
 use super::link_motion::Route;
 use super::path_answer::{BodyPair, FreeBox, Met};
-use super::robot::Linkage;
+use super::robot::{LinkView, Linkage};
 use crate::axial;
 use crate::outcome::check_limits;
 use crate::{Body, Scene, SignedDistanceOptions};
@@ -193,41 +193,12 @@ impl<S: SupportMap> Linkage<S> {
         max_boxes: usize,
         mut observer: impl FnMut(FreeBox<'_, S::Vector, BodyPair>),
     ) -> Result<JointBox<ScalarOf<S>, BodyPair>, LinkageError> {
-        let target = self.check_box(joint_box, target_distance)?;
-        let views = &self.skeleton.views;
-        let members = scene.instances().flat_map(|(obstacle, instance)| {
-            (0..instance.group().len()).map(move |member| Met::Member { obstacle, member })
-        });
-        let at_rest: Vec<_> = scene.iter().map(|(obstacle, _)| Met::Obstacle(obstacle)).chain(members).collect();
-        let pairs = views.iter().flat_map(|view| {
-            let of_link =
-                |link: usize| (0..self.bodies[link].len()).map(move |body| Met::Link { link, body }).collect();
-            let others: Vec<_> = view.base.map_or_else(|| at_rest.clone(), of_link);
-            let each = move |body| others.clone().into_iter().map(move |met| BodyPair { link: view.link, body, met });
-            (0..self.bodies[view.link].len()).flat_map(each)
-        });
-        let look = |BodyPair { link, body, met }, part: &_| {
-            let shape = &self.bodies[link][body];
-            let base = if let Met::Link { link, .. } = met { Some(link) } else { None };
-            let view = views.iter().find(|view| view.link == link && view.base == base);
-            let known = view.and_then(|view| match met {
-                Met::Obstacle(obstacle) => Some(look(&view.route, target, shape, scene.get(obstacle)?, part)),
-                Met::Member { obstacle, member } => {
-                    let member = Body::Convex(scene.member(obstacle, member)?);
-                    Some(look(&view.route, target, shape, &member, part))
-                }
-                Met::Link { link, body } => {
-                    Some(look(&view.route, target, shape, &Body::Convex(&self.bodies[link][body]), part))
-                }
-            });
-            // All of these exist; nothing would be known of one that does not.
-            known.unwrap_or(BoxState::Open { after: Scalar::ZERO, column: None })
-        };
-        Ok(search(pairs, joint_box, max_boxes, look, &mut observer))
+        let among = Among { linkage: self, scene, target: self.check_box(joint_box, target_distance)? };
+        Ok(search(among.pairs(), joint_box, max_boxes, |pair, part: &_| among.look(pair, part), &mut observer))
     }
 
     /// The target distance of the search, if it and the box are valid.
-    fn check_box(
+    pub(super) fn check_box(
         &self,
         joint_box: &[[ScalarOf<S>; 2]],
         target_distance: ScalarOf<S>,
@@ -240,6 +211,60 @@ impl<S: SupportMap> Linkage<S> {
             Some(value) => Err(LinkageError::Interval { value }),
             None => Ok(target_distance.max(Scalar::ZERO)),
         }
+    }
+}
+
+/// A linkage among the bodies of a scene at rest.
+pub(super) struct Among<'l, S: SupportMap, O: SupportMap> {
+    pub(super) linkage: &'l Linkage<S>,
+    pub(super) scene: &'l Scene<O>,
+    pub(super) target: ScalarOf<S>,
+}
+
+impl<'l, S: SupportMap, O: SupportMap<Vector = S::Vector>> Among<'l, S, O> {
+    /// All pairs of bodies that are asked about.
+    pub(super) fn pairs(&self) -> impl Iterator<Item = BodyPair> + 'l {
+        let members = self.scene.instances().flat_map(|(obstacle, instance)| {
+            (0..instance.group().len()).map(move |member| Met::Member { obstacle, member })
+        });
+        let at_rest: Vec<_> = self.scene.iter().map(|(obstacle, _)| Met::Obstacle(obstacle)).chain(members).collect();
+        let linkage = self.linkage;
+        linkage.skeleton.views.iter().flat_map(move |view| {
+            let of_link =
+                |link: usize| (0..linkage.bodies[link].len()).map(move |body| Met::Link { link, body }).collect();
+            let others: Vec<_> = view.base.map_or_else(|| at_rest.clone(), of_link);
+            let each = move |body| others.clone().into_iter().map(move |met| BodyPair { link: view.link, body, met });
+            (0..linkage.bodies[view.link].len()).flat_map(each)
+        })
+    }
+
+    /// The first body as the second sees it.
+    fn view(&self, BodyPair { link, met, .. }: BodyPair) -> Option<&'l LinkView<S::Vector>> {
+        let base = if let Met::Link { link, .. } = met { Some(link) } else { None };
+        self.linkage.skeleton.views.iter().find(|view| view.link == link && view.base == base)
+    }
+
+    /// Whether the joint of a value moves the bodies of a pair against one another.
+    pub(super) fn moves(&self, pair: BodyPair, column: usize) -> bool {
+        self.view(pair).is_none_or(|view| view.route.stages.iter().any(|stage| stage.column == column))
+    }
+
+    /// Tests a pair in a part of the box.
+    pub(super) fn look(&self, pair: BodyPair, part: &[[ScalarOf<S>; 2]]) -> BoxState<S::Vector> {
+        let Self { linkage, scene, target } = self;
+        let shape = &linkage.bodies[pair.link][pair.body];
+        let known = self.view(pair).and_then(|view| match pair.met {
+            Met::Obstacle(obstacle) => Some(look(&view.route, *target, shape, scene.get(obstacle)?, part)),
+            Met::Member { obstacle, member } => {
+                let member = Body::Convex(scene.member(obstacle, member)?);
+                Some(look(&view.route, *target, shape, &member, part))
+            }
+            Met::Link { link, body } => {
+                Some(look(&view.route, *target, shape, &Body::Convex(&linkage.bodies[link][body]), part))
+            }
+        });
+        // All of these exist; nothing would be known of one that does not.
+        known.unwrap_or(BoxState::Open { after: Scalar::ZERO, column: None })
     }
 }
 
@@ -298,7 +323,7 @@ struct BoxPart<S, P> {
 }
 
 /// What is known of a part.
-enum BoxState<V: Vector> {
+pub(super) enum BoxState<V: Vector> {
     /// A plane across this normal separates the bodies at all of its joint values.
     Free {
         normal: V,
@@ -437,7 +462,7 @@ impl<S: Scalar, P: Copy> BoxPart<S, P> {
     }
 }
 
-fn middle<S: Scalar>([low, high]: [S; 2]) -> S {
+pub(super) fn middle<S: Scalar>([low, high]: [S; 2]) -> S {
     low * S::from_f64(0.5) + high * S::from_f64(0.5)
 }
 

@@ -3,6 +3,7 @@
 mod configuration;
 mod error;
 mod frame;
+mod grown_box;
 mod joint;
 mod joint_box;
 mod joint_trajectory;
@@ -17,6 +18,7 @@ mod tree;
 pub use configuration::{ConfigurationWorkspace, LinkClearance};
 pub use error::LinkageError;
 pub use frame::LinkFrame;
+pub use grown_box::{FaceStop, GrownBox};
 pub use joint::{Joint, JointKind, Link};
 pub use joint_box::{JointBox, JointBoxOutcome};
 pub use joint_trajectory::{JointBounds, JointState, JointTrajectory};
