@@ -273,6 +273,14 @@ pub(crate) struct Pair<'a, T: Shapes + ?Sized> {
 /// The difference of any two shapes.
 pub(crate) type AnyPair<'a, V> = Pair<'a, dyn Shapes<Vector = V> + 'a>;
 
+impl<V: Vector> AnyPair<'_, V> {
+    /// The [closest points](Self::closest_points) for searches, which mostly have none, compiled once for all of them.
+    #[inline(never)]
+    pub(crate) fn closest_points_for_search(&self, offset: V, size: V::Scalar) -> Option<PointPair<V>> {
+        self.closest_points(offset, size)
+    }
+}
+
 impl<'a, T: Shapes + ?Sized> Pair<'a, T> {
     #[inline(always)]
     pub(crate) fn new(shapes: &'a T, [core_a, core_b]: [&'a Core<T::Vector>; 2]) -> Self {

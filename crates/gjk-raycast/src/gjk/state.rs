@@ -72,7 +72,7 @@ impl<V: Vector> Gjk<V> {
         frame: &Frame<V>,
         size: V::Scalar,
     ) -> Option<bool> {
-        let points = pair.closest_points(frame.offset * frame.scale, size)?;
+        let points = pair.closest_points_for_search(frame.offset * frame.scale, size)?;
         Some(self.begin_at(points.a - points.b + frame.offset, points, frame))
     }
 

@@ -111,7 +111,7 @@ impl<'a, V: Vector> Search<'a, V> {
         observer: &mut Observer<'_, V>,
     ) -> Option<End> {
         let Frame { offset, scale, per_unit, radius, .. } = self.frame;
-        if self.pair.closest_points(offset * scale, self.size).is_some() {
+        if self.pair.closest_points_for_search(offset * scale, self.size).is_some() {
             return None;
         }
         let options = GjkOptions { limit: options.limit * per_unit + radius, ..options };

@@ -188,7 +188,7 @@ impl<'a, V: Vector> Cores<'a, V> {
         if self.is_peeled() {
             return None;
         }
-        let points = self.pair.closest_points(offset * scale, self.size * scale)?;
+        let points = self.pair.closest_points_for_search(offset * scale, self.size * scale)?;
         Some((points, points.a - points.b + offset))
     }
 

@@ -128,7 +128,7 @@ pub(crate) fn near_contact<V: Vector>(
     let seen = Known::new(pair, frame);
     if begun.is_none()
         && max_iterations > 0
-        && let Some(points) = pair.closest_points(frame.offset * frame.scale, size)
+        && let Some(points) = pair.closest_points_for_search(frame.offset * frame.scale, size)
         && let Some(known) = seen.between_closest(pair, points)
     {
         return Some(known);
