@@ -377,7 +377,7 @@ fn a_minimum_and_its_proof_take_few_looks() {
     while counts.len() < 60 {
         let pair = pair::<DVec3>(&mut random, 1.0, 1.0);
         let [a, b] = pair.shapes();
-        let mut looks = |tolerance| {
+        let looks = |tolerance| {
             let (options, mut count) = (until(pair.end).with_tolerance(tolerance), 0);
             let ask = gjk_raycast::motion_clearance_with;
             let least = ask(a, pair.motions[0], b, pair.motions[1], options, |_| count += 1).expect("finite");
