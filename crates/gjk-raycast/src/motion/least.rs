@@ -371,7 +371,7 @@ fn divide<V: Vector>([from, to]: [&Instant<V>; 2], gaps: [V::Scalar; 2], refuted
         if square_of_roots([less, there]) * number(CAUTION) > h * h * (refuted.most + refuted.growth * h) * half {
             return if is_last { to.time - h } else { from.time + h };
         }
-        h = h * number(SHORTER);
+        h *= number(SHORTER);
     }
     middle
 }
