@@ -1,9 +1,9 @@
 //! The least distance of a linkage from anything along a path.
 //!
-//! It is the search of [`path`](super::path): bodies that come near are found first, and asked about one after the
-//! other. What counts as near falls to the least distance found so far, over bodies and edges, less the width of its
-//! bracket: of other bodies it is only proved that they stay farther away. Before the first edge is looked at, the
-//! distances at three of its times tell what may count as near.
+//! Like [`path`](super::path), the search first finds the bodies that come near, and then asks for the least distance
+//! of one pair after the other. A pair is near if it may come nearer than the target: the least distance found so far,
+//! over bodies and edges, less the width of its bracket. Of all other pairs the search only proves that they stay
+//! farther apart than that. The first target is the least distance at three times of the first edge.
 
 use core::ops::ControlFlow;
 

@@ -33,7 +33,7 @@ use convex_support::{Hint, Scalar, Vector};
 use super::free_interval::square_of_roots;
 use super::instant::{Approach, Instant};
 use super::moving_pair::MovingPair;
-use super::trajectory::TurningPlane;
+use super::trajectory::{BentPlane, TurningPlane};
 use crate::body::{Aligned, Shapes as _};
 use crate::gjk::rounding;
 use crate::unit::is_moderate;
@@ -42,20 +42,6 @@ use crate::unit::is_moderate;
 const ROUNDING: f64 = 24.0;
 /// If the bend of the normal in an interval is longer than this, the normals at three times say nothing about it.
 const MOST_BEND: f64 = 0.25;
-
-/// A plane across a normal, at one end of an interval in which the normal bends.
-pub(super) struct BentPlane<V: Vector> {
-    pub(super) time: V::Scalar,
-    /// The normal, and its first and second derivative.
-    pub(super) normal: V,
-    pub(super) rate: V,
-    pub(super) bend: V,
-    /// Bounds on the length of the normal and its rate in the interval.
-    pub(super) longest: V::Scalar,
-    pub(super) fastest: V::Scalar,
-    /// `μ`.
-    pub(super) lean: V::Scalar,
-}
 
 /// What an attempt at a proof has found out, if it is none: how long an interval at the end of the smaller gap can be.
 #[derive(Clone, Copy)]
@@ -152,8 +138,8 @@ impl<V: Vector> MovingPair<'_, V> {
         let bending = q.dot(x) + two * rate.dot(velocity) + a.leaning.dot(arms[0]) - b.leaning.dot(arms[1]);
         let turning = radius * (rate.length_squared() + n.dot(q));
         let level = n.dot(x) - radius - lean * (bending - turning);
-        // The error of the points counts once for the normal and once for what it leans by. The direction of the
-        // support points need not be exact: what it is wrong by, times the size of a core, is a part of the rest.
+        // The error of the points counts along the normal and along what is added to it. The direction of the support
+        // points need not be exact: its error times the size of a core is a part of the other magnitudes.
         let leans = lean * (q.norm() + a.leaning.norm() + b.leaning.norm());
         let swings = a.leaning.norm() * arms[0].norm() + b.leaning.norm() * arms[1].norm();
         let magnitude = lean * (two * rate.norm() * velocity.norm() + swings + radius * rate.length_squared());

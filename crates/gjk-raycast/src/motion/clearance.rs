@@ -45,7 +45,7 @@ const MAX_LOOKS_FOR_LEAST: usize = 100_000;
 /// A minimum takes about fifteen times examined, of which the search for it takes about ten and the proof about five.
 /// Around a time at which the distance is about the least, the shortest proved interval is as long as the fourth root of
 /// the [tolerance](MotionClearanceOptions::tolerance) if both motions are [rigid](crate::RigidMotion), and as its square
-/// root for other motions.
+/// root for other motions and over half-spaces.
 ///
 /// # Errors
 /// [`RayCastError::NonFinite`] if a number of a [`RigidMotion`](crate::RigidMotion) is not finite, the
@@ -229,7 +229,8 @@ impl<V: Vector> MotionClearance<V> {
             }
             bodies.aim(zero);
         }
-        let (end, search) = LeastSearch::run(&mut *bodies, options, limit, observer);
+        let relative = MotionCastOptions { tolerance: options.tolerance, ..options.of_cast() };
+        let (end, search) = LeastSearch::run(&mut *bodies, relative, limit, observer);
         let (least, target, proved, looks) = (search.least, search.target, search.proved, search.looks);
         bodies.aim(zero);
         let there = (least.time, Some(least.normal));
@@ -297,8 +298,8 @@ impl<V: Vector> MotionClearance<V> {
         }
     }
 
-    /// The answer that the bodies' distance at a time is the least, with a first guess of the normal, if there is one, and a lower bound for all times, or none if there
-    /// is no other time.
+    /// The answer that the bodies' distance at a time is the least, with a lower bound for all times, or none if there is
+    /// no other time. The first guess of the normal at that time may be given.
     fn at(
         bodies: &dyn Approach<V>,
         (time, axis): (V::Scalar, Option<V>),

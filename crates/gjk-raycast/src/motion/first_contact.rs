@@ -4,6 +4,10 @@
 //! it chooses their ends decides only how many there are. Far from contact the end is put as far away as can be
 //! expected to be proved. If the bodies close in so fast that a contact can be expected before that, the end is put
 //! there, by Newton's method on the distance.
+//!
+//! The strategy is [`Search::advance`], from top to bottom. The time of the next look is in
+//! [`next_time`](super::next_time), and what is different for bodies that begin in contact in
+//! [`from_contact`](super::from_contact).
 
 use convex_support::numerics::range::is_comfortable;
 use convex_support::{Scalar, Vector};
@@ -22,7 +26,7 @@ pub(super) const AIM: f64 = 1.5;
 /// itself.
 pub(super) const IDLE_LOOKS: u8 = 2;
 
-/// How deep an overlap is looked for, in units of the error of the distance.
+/// How deep the overlap is to be that ends a bracket, in units of the error of the distance.
 const DEPTH: f64 = 2.0;
 
 /// After a graze the search goes on until the bodies are apart again by this many times the distance at which it
@@ -156,8 +160,8 @@ pub(super) struct Search<'p, V: Vector> {
     pub(super) farther: Option<Instant<V>>,
     /// The earliest time known at which they overlap.
     pub(super) upper: V::Scalar,
-    /// The length of the interval in which a contact is looked for, the distance from contact at the end that is nearer
-    /// to it, and how often in a row neither was halved.
+    /// The length of the interval in which the search expects a contact, the smaller distance from contact at its two
+    /// ends, and how often in a row a look has halved neither of them.
     width: V::Scalar,
     way: V::Scalar,
     pub(super) slow: u8,
@@ -252,14 +256,18 @@ impl<'p, V: Vector> Search<'p, V> {
         Ok(search)
     }
 
-    /// Goes on from a time at which the bodies are apart to the end of the motion, or to a contact.
+    /// Goes on from a time at which the bodies are apart to the end of the motion, or to a contact: the strategy of the
+    /// search. Each turn of the loop proves one more interval, or finds a time at which the bodies are not certainly
+    /// apart.
     pub(super) fn advance(&mut self) -> MotionEnd<V> {
         let zero = V::Scalar::ZERO;
         while self.looks < self.options.max_iterations {
+            // The whole motion is proved.
             let rest = [self.near.time, self.options.max_time];
             if !(rest[0] < rest[1]) {
                 return MotionEnd::Miss(self.near.normal);
             }
+            // Bodies that leave one another mostly do so for good, which balls around them prove without a look.
             if self.near.closing <= zero
                 && self.upper == V::Scalar::infinity()
                 && let Some(axis) = self.bodies.stays_far_apart(rest)
@@ -267,6 +275,8 @@ impl<'p, V: Vector> Search<'p, V> {
                 self.near.time = rest[1];
                 return MotionEnd::Miss(axis);
             }
+            // So near to contact no plane can be told from contact: what is left is a time at which they overlap. The
+            // same holds if no time is left between those that are known.
             let time = if self.near.distance <= self.closest() { None } else { self.next_time() };
             let Some(time) = time else {
                 match self.close_in() {
@@ -276,6 +286,7 @@ impl<'p, V: Vector> Search<'p, V> {
             };
             let there = match self.base.stage {
                 Stage::Apart => self.glance(time),
+                // Bodies that began in contact: their steps may be too short to come to an end.
                 _ if self.is_endless() => break,
                 _ => self.look(self.within(time), Limits::new(zero, zero)),
             };

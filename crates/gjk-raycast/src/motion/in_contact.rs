@@ -37,9 +37,8 @@ use convex_support::{Posed, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::instant::{Approach as _, Instant};
-use super::moving_pair::MovingPair;
+use super::moving_pair::{MovingPair, times};
 use super::placed::{BodyFrameCorners, Placed};
-use super::rough_look::times;
 use super::trajectory::TurningPlane;
 use crate::SignedDistanceOptions;
 use crate::gjk::{Frame, Gjk, GjkOptions, gjk, rounding};

@@ -4,8 +4,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::bent_plane::BentPlane;
-use super::trajectory::TurningPlane;
+use super::trajectory::{BentPlane, TurningPlane};
 use crate::Distance;
 use crate::unit::length_bound;
 

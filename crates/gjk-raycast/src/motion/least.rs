@@ -1,8 +1,8 @@
 //! The search for the least distance of two moving bodies.
 //!
 //! If the bodies never come as near as `u − w`, and are apart by `u` at some time, then their least distance is in
-//! `[u − w, u]`. So the search first looks for a minimum: at a few times over the whole motion, and then, by secants of
-//! the closing speed, for the minimum beside the nearest of them. The distance there, less a small width, is the target.
+//! `[u − w, u]`. So the search first looks for a minimum: at a few times over the whole motion, and then beside the
+//! time at which the bodies are nearest. The distance at the minimum, less a small width, is the target.
 //! Then it proves from the start to the end, one interval after the other, that the bodies stay farther apart than the
 //! target. The times that were looked at are the first ends of intervals; if an interval is not proved, another time in
 //! it is looked at, and both parts are proved. Where the bodies come as near as the target, they descend to a further
@@ -21,7 +21,7 @@ use super::first_contact::is_in_range;
 use super::free_interval::square_of_roots;
 use super::instant::{Approach, Instant, Limits};
 use super::trajectory::TurningPlane;
-use crate::{MotionClearanceOptions, MotionIterate};
+use crate::{MotionCastOptions, MotionIterate};
 
 /// The width of the bracket to come, in errors of the distance, if rounding decides.
 const WIDTH: f64 = 4.0;
@@ -67,7 +67,8 @@ pub(super) enum LeastEnd {
 /// The state of the search. Distances are measured from contact.
 pub(super) struct LeastSearch<'p, V: Vector> {
     bodies: &'p mut dyn Approach<V>,
-    options: MotionClearanceOptions<V>,
+    /// The tolerance is relative to the distance.
+    options: MotionCastOptions<V>,
     observer: &'p mut dyn FnMut(MotionIterate<V>),
     /// Up to the time `proved` the bodies are farther apart than the target.
     pub(super) target: V::Scalar,
@@ -86,7 +87,7 @@ impl<'p, V: Vector> LeastSearch<'p, V> {
     /// The search for the least distance, or for the proof that it is no less than a limit, which may be infinite.
     pub(super) fn run(
         bodies: &'p mut dyn Approach<V>,
-        options: MotionClearanceOptions<V>,
+        options: MotionCastOptions<V>,
         limit: V::Scalar,
         observer: &'p mut dyn FnMut(MotionIterate<V>),
     ) -> (LeastEnd, Self) {
@@ -370,7 +371,7 @@ fn divide<V: Vector>([from, to]: [&Instant<V>; 2], gaps: [V::Scalar; 2], refuted
         if square_of_roots([less, there]) * number(CAUTION) > h * h * (refuted.most + refuted.growth * h) * half {
             return if is_last { to.time - h } else { from.time + h };
         }
-        h = h * number(SHORTER);
+        h *= number(SHORTER);
     }
     middle
 }

@@ -18,7 +18,6 @@ mod next_time;
 mod over_half_space;
 mod placed;
 mod rigid_motion;
-mod rough_look;
 mod trajectory;
 
 pub(crate) use chain_motion::Bounds;

@@ -3,10 +3,9 @@
 use convex_support::{AngularVelocity, BoundingSphere, Core, CoreKind, Matrix, Parallelotope, Scalar, Spin, Vector};
 use num_traits::Float;
 
-use super::bent_plane::BentPlane;
 use super::placed::Moved;
 use super::rigid_motion::{SpinOf, turn_error};
-use super::trajectory::{MovingBall, RigidMotion, Trajectory, TurningPlane};
+use super::trajectory::{BentPlane, MovingBall, RigidMotion, Trajectory, TurningPlane};
 use crate::double::{LEAST, Vec3, array, cross, dot, vector};
 use crate::shape::Shape;
 use crate::unit::{is_moderate, length_bound};

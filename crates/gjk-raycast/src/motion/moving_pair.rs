@@ -1,4 +1,9 @@
-//! Two bodies and their motions, and the table of functions that a lean search for their contact leaves out.
+//! Two bodies and their motions: what is known of them at one time, and the table of functions that a lean search for
+//! their contact leaves out.
+//!
+//! A look at one time begins in [`at`](Approach::at), with the closed forms for [closest points](super::near_look) and
+//! for [boxes](super::box_look). If neither tells enough, it goes on with GJK, which well apart is all, and near contact
+//! with the closest points of the last look, or at last with the signed distance.
 
 use core::cell::{Cell, RefCell};
 
@@ -6,15 +11,14 @@ use convex_support::numerics::range::is_comfortable;
 use convex_support::{Core, Hint, Parallelotope, Scalar, Vector, compiled_table};
 use num_traits::Float;
 
-use super::bent_plane::BentPlane;
 use super::first_contact::Begin;
-use super::instant::{Approach, Instant, Limits};
+use super::instant::{Approach, Instant, Limits, NEAR_IN_MOTION};
 use super::moving_body::MovingBody;
 use super::placed::{BodyFrameCorners, Placed};
-use super::trajectory::{Trajectory, TurningPlane};
+use super::trajectory::{BentPlane, Trajectory, TurningPlane};
 use crate::body::{CastBody, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::distance::distance_of_any;
-use crate::gjk::rounding;
+use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk, rounding};
 use crate::linear_cast::by_search;
 use crate::observer::Observer;
 use crate::options::{MayBeLean, Rare};
@@ -25,6 +29,11 @@ use crate::unit::{is_moderate, length_bound, lost_to_underflow, power_of_two_nea
 use crate::{
     Distance, DistanceOptions, LinearCast, LinearCastOptions, Motion, MotionCastOptions, SignedDistanceOptions,
 };
+
+/// Points in another unit.
+pub(super) fn times<V: Vector>(points: PointPair<V>, factor: V::Scalar) -> PointPair<V> {
+    PointPair { a: points.a * factor, b: points.b * factor }
+}
 
 /// Two bodies and their motions.
 pub(super) struct MovingPair<'s, V: Vector> {
@@ -151,17 +160,64 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         (self.rare?.by_boxes)(self, time, self.boxes.as_ref()?, axis, limits, is_close)
     }
 
-    /// The bodies at a time, if neither closed form tells enough: by GJK, if a rough answer will do; by the corners
-    /// that were closest at the last look; or by the signed distance.
+    /// The bodies at a time, if no closed form tells enough.
     #[inline(never)]
     fn by_search(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>, is_rough: bool) -> Instant<V> {
         let placed = self.placed(time);
+        // Far from contact the plane of GJK is enough.
         if is_rough && let Some(there) = self.roughly(&placed, axis, limits) {
             return there;
         }
+        // Near contact the corners that were closest a moment ago mostly are so still. They do not tell a depth.
         let is_depth_asked = limits.depth > Scalar::ZERO;
         let known = if is_depth_asked { None } else { self.near_look(&placed, axis) };
         known.unwrap_or_else(|| self.by_signed_distance(&placed, axis, limits))
+    }
+
+    /// The bodies at a time, by GJK; `None` if they are nearly in contact, or overlap by an unknown depth.
+    ///
+    /// The search begins with the face that was closest at the last time. Mostly it still is, and one support point
+    /// ends the search. If the bodies overlap by more than rounding, the best plane known tells roughly how deep, which
+    /// is enough for the search of the motion.
+    fn roughly(&self, placed: &Placed<'_, V>, axis: V, limits: Limits<V::Scalar>) -> Option<Instant<V>> {
+        let pair = &mut placed.pair();
+        let size = pair.size(placed.offset);
+        let kept = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
+        // If the cores have passed through one another, the vector to the face points the other way.
+        let face = kept.filter(|face| face.v.dot(axis) > Scalar::ZERO && face.v.length() > pair.radius());
+        let frame = Frame::new(pair, placed.offset, size);
+        let Frame { scale, per_unit, radius, error, .. } = frame;
+        let in_unit = |(point, points): (V, PointPair<V>)| (point * per_unit, times(points, per_unit));
+        let mut state = match &face {
+            None => Gjk::new(axis),
+            Some(face) => Gjk::at_face(face.corners().map(in_unit), face.weights, face.v * per_unit),
+        };
+        let options = GjkOptions {
+            limit: limits.distance * per_unit + radius,
+            tolerance: limits.rough,
+            ..GjkOptions::new(state.normal, SignedDistanceOptions::<V>::new().max_iterations)
+        };
+        let end = gjk(&mut state, pair, frame, options, None, &mut Observer::none());
+        self.count(state.iterations);
+        let (distance, near) = (state.lower - radius, error * Scalar::from_f64(NEAR_IN_MOTION));
+        let unit = state.axis.unit()?;
+        let known = [state.lower * scale - pair.radius(), error * scale];
+        // If the distance is NaN, neither holds.
+        if end == gjk::End::Separated && distance > near {
+            state.ensure_measured();
+            // On a curved body other points will be the closest ones.
+            if !pair.is_curved() {
+                let corners = state.simplex.weighted().map(|(_, corner)| times(corner, scale));
+                self.closest.borrow_mut().keep(corners, placed);
+            }
+            return Some(self.across(placed, unit, times(state.simplex.weighted_witness(), scale), known));
+        }
+        if end == gjk::End::Overlap && distance < -near {
+            self.count(1);
+            let (_, points) = pair.support(-unit);
+            return Some(self.across(placed, unit, times(points, scale), known));
+        }
+        None
     }
 
     /// The bodies at a time, by their signed distance.
@@ -241,9 +297,12 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
     #[inline(always)]
     fn at(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>, is_close: bool) -> Instant<V> {
         let known = match self.knows_points {
+            // Closest points tell no depth.
             _ if is_close && limits.depth > Scalar::ZERO => None,
+            // Balls and capsules: a closed form, and one support point as its proof.
             true => self.by_closest_points(time, axis, limits, is_close),
-            // The level of a facet is no more than a lower bound of the distance.
+            // The level of a facet of two boxes is no more than a lower bound of the distance; with a radius their
+            // difference has no facets.
             _ if self.a.core.radius > Scalar::ZERO || limits.rough == Scalar::ZERO => None,
             false => self.by_facets(time, axis, limits, is_close),
         };

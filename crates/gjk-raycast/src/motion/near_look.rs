@@ -130,8 +130,8 @@ impl<V: Vector> MovingPair<'_, V> {
     /// An upper bound of the signed distance, if the corners of a face prove that the bodies overlap; `None` if they
     /// do not.
     ///
-    /// Each corner is looked for anew, along a direction that leans away from the others, since a corner that was kept
-    /// is less exact than a support point.
+    /// A corner that was kept is less exact than a support point. So each corner is computed anew as a support point,
+    /// along a direction that leans from the other corners towards it.
     fn overlap_of_corners(
         &self,
         placed: &Placed<'_, V>,

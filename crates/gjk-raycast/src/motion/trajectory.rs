@@ -191,6 +191,20 @@ pub struct TurningPlane<V> {
     pub to: V,
 }
 
+/// A plane through zero at one end of an interval in which its normal [bends](super::bent_plane).
+pub(super) struct BentPlane<V: Vector> {
+    pub(super) time: V::Scalar,
+    /// The normal, and its first and second derivative.
+    pub(super) normal: V,
+    pub(super) rate: V,
+    pub(super) bend: V,
+    /// Bounds on the length of the normal and its rate in the interval.
+    pub(super) longest: V::Scalar,
+    pub(super) fastest: V::Scalar,
+    /// `μ`, half of the square of the duration.
+    pub(super) lean: V::Scalar,
+}
+
 /// A ball that moves at constant velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovingBall<V: Vector> {
