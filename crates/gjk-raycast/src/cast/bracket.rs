@@ -25,6 +25,10 @@ const LARGEST_TOLERANCE: f64 = 16.0;
 /// digits.
 const LEANS: f64 = 1.0 / 64.0;
 
+/// The reciprocal of a cosine up to which both bounds of a closed bracket, which are errors of 1, 1.5 and a noise times as
+/// far from where they should be, are no farther apart than [`NARROW`].
+const STEEP: f64 = 8.0;
+
 /// How far rounding moves the points that a search compares, in units of ε times the size.
 pub(super) const NOISE: f64 = 8.0;
 
@@ -266,6 +270,13 @@ impl<'a, V: Vector> Bracket<'a, V> {
         let number = V::Scalar::from_f64;
         let way = (self.low() - self.ray.start).max(Scalar::ZERO);
         self.error * number(NARROW) + way * V::Scalar::EPSILON * number(NARROW_OF_WAY) + self.tolerance()
+    }
+
+    /// Whether a bound is of a surface so nearly along the line that both may be far apart.
+    #[inline(always)]
+    pub(super) fn leans(&self) -> bool {
+        // NaN leans.
+        !(self.low.bound.spread.max(self.high.spread) <= V::Scalar::from_f64(STEEP))
     }
 
     /// Where the bounds are on the line, wider by what rounding moved them.

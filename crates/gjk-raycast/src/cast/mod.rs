@@ -118,11 +118,11 @@ fn cast_by<V: Vector, const ALL: bool>(
     let mut is_near = true;
     if let Ok(contact) = &mut found {
         let (on, _) = bracket.point_near_line();
-        if bracket.is_entry_open() && bracket.is_past_start() {
+        let is_bounded = bracket.is_entry_open() && bracket.is_past_start();
+        if is_bounded {
             bound_entry(&mut bracket);
         }
-        let [low, high] = bracket.ends();
-        if high - low > bracket.narrow() && !bracket.is_entry_open() && bracket.is_narrow(high) {
+        if is_bounded || bracket.leans() {
             is_near = draw_near(&mut bracket, contact, on);
         }
     }

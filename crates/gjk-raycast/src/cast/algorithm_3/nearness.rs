@@ -24,7 +24,8 @@ use crate::simplex::{Closest, Simplex};
 /// The most support points, for each of both ends. Beside an edge it takes two or three.
 const MAX_LOOKS: usize = 8;
 
-/// Whether points of the body are known near both bounds, given that a point of the body is on the line at `on`.
+/// Whether points of the body are known near both bounds, given that a point of the body is on the line at `on`. Bounds
+/// without an upper one, or too deep to be told converged, are left as they are.
 #[cold]
 #[inline(never)]
 pub(in crate::cast) fn draw_near<V: Vector>(
@@ -32,6 +33,10 @@ pub(in crate::cast) fn draw_near<V: Vector>(
     contact: &mut RayContact<V>,
     on: V::Scalar,
 ) -> bool {
+    let [low, high] = bracket.ends();
+    if bracket.is_entry_open() || high - low <= bracket.narrow() || !bracket.is_narrow(high) {
+        return true;
+    }
     let core_point = bracket.line().at(on) - contact.normal.unwrap_or(V::ZERO) * bracket.radius;
     bracket.keep_depth();
     let is_near = |bracket: &mut Bracket<'_, V>, end: usize| {
