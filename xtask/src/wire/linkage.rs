@@ -120,6 +120,8 @@ pub fn problem(why: LinkageError) -> Problem {
         | LinkageError::NoSuchJoint { .. }
         | LinkageError::Pair { .. }
         | LinkageError::OutsideLimits { .. } => Kind::Parse,
+        // That the values to grow a box around are free is not known.
+        LinkageError::NotFree { .. } => Kind::NotConverged,
         _ => Kind::InvalidShape,
     };
     Problem::new(kind, why.to_string())
