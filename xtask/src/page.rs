@@ -79,7 +79,7 @@ fn compile(half: &str, work: &Path) -> Result<(), String> {
     let mut command = Command::new(cargo);
     command.args(["build", "--release", "--locked", "--lib", "--target", TARGET, "--features", half]);
     // Of functions as short as those of vectors a call takes more bytes than the body, which `opt-level = "z"` misjudges.
-    command.env("RUSTFLAGS", "-Cllvm-args=-inline-threshold=30");
+    command.env("RUSTFLAGS", "-Cllvm-args=-inline-threshold=40");
     command.arg("--target-dir").arg(work).arg("--manifest-path").arg(Path::new(PACKAGE).join("Cargo.toml"));
     let status = command.status().map_err(|why| format!("cannot run cargo: {why}"))?;
     match status.success() {
