@@ -8,7 +8,7 @@ use crate::body::{Both, Shapes};
 use crate::gjk::{End, Gjk, GjkOptions, first_direction};
 use crate::observer::Observer;
 use crate::options::{MAX_ITERATIONS, MayBeLean, Rare, options};
-use crate::separation::{Begun, Cores, OfOverlap, RareInDistances, Search, Wanted, direct, separation};
+use crate::separation::{Begun, Cores, FirstSearch, OfOverlap, RareInDistances, Wanted, direct, separation};
 use crate::shape::Shape;
 use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, SubAlgorithm};
 
@@ -211,7 +211,7 @@ fn searched<V: Vector>(
     observer: &mut Observer<'_, V>,
 ) -> Distance<V> {
     let &DistanceOptions { tolerance, max_iterations, sub_algorithm, .. } = options;
-    let mut search = Search::new(shapes, cores);
+    let mut search = FirstSearch::new(shapes, cores);
     let mut state = Gjk::new(first_direction(axis, search.frame.offset));
     let gjk_options = GjkOptions { limit, tolerance, sub_algorithm, ..GjkOptions::new(state.normal, max_iterations) };
     let touching = search.frame.radius;
@@ -232,7 +232,7 @@ fn searched<V: Vector>(
 #[cold]
 #[inline(never)]
 fn searched_closely<V: Vector>(
-    search: Search<'_, V>,
+    search: FirstSearch<'_, V>,
     begun: Begun<'_, V>,
     (axis, limit): (Option<V>, V::Scalar),
     &DistanceOptions { tolerance, max_iterations, sub_algorithm, rare, .. }: &DistanceOptions<V>,

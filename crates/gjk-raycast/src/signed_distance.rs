@@ -6,7 +6,9 @@ use num_traits::Float as _;
 use crate::body::{Both, Shapes, TracedSupport as _};
 use crate::gjk::{End, Gjk, GjkOptions, first_direction};
 use crate::observer::Observer;
-use crate::separation::{Begun, Cores, OfOverlap, RareInDistances, Search, Separation, Wanted, direct, separation};
+use crate::separation::{
+    Begun, Cores, FirstSearch, OfOverlap, RareInDistances, Separation, Wanted, direct, separation,
+};
 use crate::shape::Shape;
 use crate::{Iterate, SignedDistance, SignedDistanceOptions, Status};
 
@@ -111,7 +113,7 @@ fn searched<V: Vector>(
     observer: &mut Observer<'_, V>,
 ) -> SignedDistance<V> {
     let SignedDistanceOptions { limit, max_iterations, axis, .. } = wanted.options;
-    let mut search = Search::new(shapes, cores);
+    let mut search = FirstSearch::new(shapes, cores);
     // Rounded boxes are mostly apart, which only a search can tell.
     let is_rounded = search.pair.radius() > Scalar::ZERO;
     let boxes = if is_rounded { None } else { search.pair.parallelotopes_within_reach(search.frame.offset) };
@@ -139,7 +141,7 @@ fn searched<V: Vector>(
 /// The signed distance of bodies that are not plainly apart, after a first search for it.
 #[inline(never)]
 fn searched_closely<V: Vector>(
-    search: Search<'_, V>,
+    search: FirstSearch<'_, V>,
     begun: Begun<'_, V>,
     wanted: &Wanted<V>,
     observer: &mut Observer<'_, V>,

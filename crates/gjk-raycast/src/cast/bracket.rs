@@ -27,7 +27,7 @@ const LEANS: f64 = 1.0 / 64.0;
 
 /// The reciprocal of a cosine up to which both bounds of a closed bracket, which are errors of 1, 1.5 and a noise times as
 /// far from where they should be, are no farther apart than [`NARROW`].
-const STEEP: f64 = 8.0;
+const STEEP_SPREAD: f64 = 8.0;
 
 /// How far rounding moves the points that a search compares, in units of ε times the size.
 pub(super) const NOISE: f64 = 8.0;
@@ -276,7 +276,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
     #[inline(always)]
     pub(super) fn leans(&self) -> bool {
         // NaN leans.
-        !(self.low.bound.spread.max(self.high.spread) <= V::Scalar::from_f64(STEEP))
+        !(self.low.bound.spread.max(self.high.spread) <= V::Scalar::from_f64(STEEP_SPREAD))
     }
 
     /// Where the bounds are on the line, wider by what rounding moved them.

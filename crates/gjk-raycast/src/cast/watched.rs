@@ -25,10 +25,10 @@ type OffLine<S> = (Across<S>, S);
 type Enclosing<S> = ([OffLine<S>; 2], S);
 
 /// What an observer is shown of the bounds. It is apart from the bracket, since few casts have an observer.
-pub(super) struct Watched<V: Vector>(Box<Seen<V>>);
+pub(super) struct Watched<V: Vector>(Box<ShownBracket<V>>);
 
 /// Both bounds by all support points so far, as parameters of the line.
-struct Seen<V: Vector> {
+struct ShownBracket<V: Vector> {
     line: Line<V>,
     axes: [V; 2],
     /// The corners of the nearest triangle first, and then the last points.
@@ -41,7 +41,7 @@ struct Seen<V: Vector> {
 impl<V: Vector> Watched<V> {
     pub(super) fn new(line: Line<V>) -> Self {
         let (axes, unknown) = (axes_across(line.direction), V::Scalar::infinity());
-        Self(Box::new(Seen { line, axes, points: Vec::new(), corners: 0, lower: -unknown, upper: unknown }))
+        Self(Box::new(ShownBracket { line, axes, points: Vec::new(), corners: 0, lower: -unknown, upper: unknown }))
     }
 
     /// Both bounds, by those of the search and all support points so far, of which the last is the one of the core along
@@ -52,7 +52,7 @@ impl<V: Vector> Watched<V> {
     }
 }
 
-impl<V: Vector> Seen<V> {
+impl<V: Vector> ShownBracket<V> {
     /// Both bounds, by those of the search and all support points so far. They only ever narrow, and do not pass one
     /// another by rounding.
     fn narrow(&mut self, low: V::Scalar, high: V::Scalar) -> (V::Scalar, V::Scalar) {

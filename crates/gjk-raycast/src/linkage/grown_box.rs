@@ -17,7 +17,7 @@ use convex_support::{Scalar, ScalarOf, SupportMap};
 use num_traits::Float;
 
 use super::error::LinkageError;
-use super::joint_box::{Among, BoxState, middle};
+use super::joint_box::{BoxState, LinkageAmong, middle};
 use super::path_answer::BodyPair;
 use super::robot::Linkage;
 use crate::Scene;
@@ -105,7 +105,7 @@ impl<S: SupportMap> Linkage<S> {
         target_distance: ScalarOf<S>,
         max_boxes: usize,
     ) -> Result<GrownBox<ScalarOf<S>>, LinkageError> {
-        let among = Among { linkage: self, scene, target: self.check_box(limits, target_distance)? };
+        let among = LinkageAmong { linkage: self, scene, target: self.check_box(limits, target_distance)? };
         self.check(0, values)?;
         let is_outside = |(value, [low, high]): (&ScalarOf<S>, &[ScalarOf<S>; 2])| value < low || high < value;
         if let Some(value) = values.iter().zip(limits).position(is_outside) {
@@ -121,7 +121,7 @@ impl<S: SupportMap> Linkage<S> {
 
 /// The state of the search.
 struct Growth<'l, S: SupportMap, O: SupportMap> {
-    among: Among<'l, S, O>,
+    among: LinkageAmong<'l, S, O>,
     values: &'l [ScalarOf<S>],
     limits: &'l [[ScalarOf<S>; 2]],
     /// The pairs of bodies, and a box within which each is known to be free.
@@ -137,7 +137,7 @@ struct InTheWay<S> {
 }
 
 /// A face, and what is known of it.
-struct Face<S> {
+struct GrowingFace<S> {
     step: S,
     stop: Option<FaceStop<S>>,
 }
@@ -208,7 +208,7 @@ impl<S: SupportMap, O: SupportMap<Vector = S::Vector>> Growth<'_, S, O> {
         let shortest = |column: usize| (self.limits[column][1] - self.limits[column][0]) * number(SHORTEST);
         let face = |column: usize, end: usize| {
             let step = (joint_box[column][end] - self.values[column]).abs() * number(0.5);
-            Face { step: Float::max(step, shortest(column)), stop: None }
+            GrowingFace { step: Float::max(step, shortest(column)), stop: None }
         };
         let mut faces: Vec<_> = (0..joint_box.len()).map(|column| [0, 1].map(|end| face(column, end))).collect();
         let shortest: Vec<_> = (0..joint_box.len()).map(shortest).collect();
@@ -244,7 +244,7 @@ impl<S: SupportMap, O: SupportMap<Vector = S::Vector>> Growth<'_, S, O> {
                 }
             }
         }
-        let stop = |face: Face<_>| face.stop.unwrap_or(FaceStop::Work);
+        let stop = |face: GrowingFace<_>| face.stop.unwrap_or(FaceStop::Work);
         faces.into_iter().map(|ends| ends.map(stop)).collect()
     }
 

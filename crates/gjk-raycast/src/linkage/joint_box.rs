@@ -193,7 +193,7 @@ impl<S: SupportMap> Linkage<S> {
         max_boxes: usize,
         mut observer: impl FnMut(FreeBox<'_, S::Vector, BodyPair>),
     ) -> Result<JointBox<ScalarOf<S>, BodyPair>, LinkageError> {
-        let among = Among { linkage: self, scene, target: self.check_box(joint_box, target_distance)? };
+        let among = LinkageAmong { linkage: self, scene, target: self.check_box(joint_box, target_distance)? };
         Ok(search(among.pairs(), joint_box, max_boxes, |pair, part: &_| among.look(pair, part), &mut observer))
     }
 
@@ -215,13 +215,13 @@ impl<S: SupportMap> Linkage<S> {
 }
 
 /// A linkage among the bodies of a scene at rest.
-pub(super) struct Among<'l, S: SupportMap, O: SupportMap> {
+pub(super) struct LinkageAmong<'l, S: SupportMap, O: SupportMap> {
     pub(super) linkage: &'l Linkage<S>,
     pub(super) scene: &'l Scene<O>,
     pub(super) target: ScalarOf<S>,
 }
 
-impl<'l, S: SupportMap, O: SupportMap<Vector = S::Vector>> Among<'l, S, O> {
+impl<'l, S: SupportMap, O: SupportMap<Vector = S::Vector>> LinkageAmong<'l, S, O> {
     /// All pairs of bodies that are asked about.
     pub(super) fn pairs(&self) -> impl Iterator<Item = BodyPair> + 'l {
         let members = self.scene.instances().flat_map(|(obstacle, instance)| {

@@ -39,7 +39,7 @@ use crate::gjk::rounding;
 use crate::unit::is_moderate;
 
 /// A bound on the rounding of the leaning height, in ε times the sum of its magnitudes, and of the condition.
-const ROUNDING: f64 = 24.0;
+const ROUNDING_OF_LEANING: f64 = 24.0;
 /// If the bend of the normal in an interval is longer than this, the normals at three times say nothing about it.
 const MOST_BEND: f64 = 0.25;
 
@@ -63,7 +63,7 @@ pub(super) fn stay_apart<V: Vector>(
     let (number, zero) = (V::Scalar::from_f64, V::Scalar::ZERO);
     let times = [from.time, to.time];
     let (s, difference) = (times[1] - times[0], to.normal - from.normal);
-    let half = number(0.5 + ROUNDING * V::Scalar::EPSILON.as_f64());
+    let half = number(0.5 + ROUNDING_OF_LEANING * V::Scalar::EPSILON.as_f64());
     // (√g₀ + √g₁)² > s²·M/2
     let is_proved = |gaps: [V::Scalar; 2], most: V::Scalar| {
         gaps[0] > zero && gaps[1] > zero && s * s * most * half < square_of_roots(gaps)
@@ -143,7 +143,7 @@ impl<V: Vector> MovingPair<'_, V> {
         let leans = lean * (q.norm() + a.leaning.norm() + b.leaning.norm());
         let swings = a.leaning.norm() * arms[0].norm() + b.leaning.norm() * arms[1].norm();
         let magnitude = lean * (two * rate.norm() * velocity.norm() + swings + radius * rate.length_squared());
-        let lost = (size * (one + leans) + magnitude) * V::Scalar::EPSILON * V::Scalar::from_f64(ROUNDING)
+        let lost = (size * (one + leans) + magnitude) * V::Scalar::EPSILON * V::Scalar::from_f64(ROUNDING_OF_LEANING)
             + (rounding(size) + pair.error()) * (two + leans);
         let growth = a.jerk + b.jerk + three * q.norm() * (velocity.norm() + radius * fastest);
         Some([level - lost, growth])

@@ -36,16 +36,16 @@ const IDLE_STEPS_DOWN: u8 = 2;
 /// If the search has used half of its looks, the tolerance is no less than this.
 const LOOSE: f64 = 1.0 / 1024.0;
 /// The number of instants on the way to the first minimum that are kept as ends of intervals.
-const KEPT: usize = 24;
+const MOST_KEPT: usize = 24;
 /// How often an interval is shortened by its gaps. After that it is halved.
 const DIVISIONS: usize = 64;
 /// A bound on the rounding of the difference of a gap and the target, in ε.
-const ROUNDING: f64 = 8.0;
+const ROUNDING_OF_TARGET: f64 = 8.0;
 /// Nearer to an end of an interval than this part of it, no minimum is expected.
-const AT_END: f64 = 1.0 / 64.0;
+const BESIDE_END: f64 = 1.0 / 64.0;
 /// If the speeds of two instants differ by less than this many errors of their distances in the time between, rounding
 /// decides what the distances say of a minimum.
-const NOISE: f64 = 32.0;
+const NOISE_OF_SPEED: f64 = 32.0;
 /// The next interval is expected to be proved with this part of its gaps.
 const CAUTION: f64 = 0.9;
 /// Each interval that is tried is this part of the one before.
@@ -78,7 +78,7 @@ pub(super) struct LeastSearch<'p, V: Vector> {
     /// The instant at which they are nearest, as far as is known.
     pub(super) least: Instant<V>,
     /// The instants on the way to the first minimum, in the order of time.
-    kept: [Instant<V>; KEPT],
+    kept: [Instant<V>; MOST_KEPT],
     len: usize,
     pub(super) looks: usize,
 }
@@ -102,7 +102,7 @@ impl<'p, V: Vector> LeastSearch<'p, V> {
             proved: zero,
             slack: zero,
             least: start,
-            kept: [start; KEPT],
+            kept: [start; MOST_KEPT],
             len: 1,
             looks: 1,
         };
@@ -206,7 +206,7 @@ impl<'p, V: Vector> LeastSearch<'p, V> {
     /// By how much the bodies are certainly farther apart than the target.
     fn above_target(&self, there: &Instant<V>) -> V::Scalar {
         let measure = there.gap + self.target + self.bodies.reach();
-        there.gap - self.target - measure * V::Scalar::from_f64(ROUNDING * V::Scalar::EPSILON.as_f64())
+        there.gap - self.target - measure * V::Scalar::from_f64(ROUNDING_OF_TARGET * V::Scalar::EPSILON.as_f64())
     }
 
     /// Lets the target fall to just below the distance at a local minimum, if that is less than before, or by a
@@ -254,7 +254,7 @@ impl<'p, V: Vector> LeastSearch<'p, V> {
     /// Keeps an instant for the proof.
     fn keep(&mut self, there: Instant<V>) {
         let at = self.kept[..self.len].partition_point(|kept| kept.time < there.time);
-        if self.len < KEPT && !(at < self.len && self.kept[at].time == there.time) {
+        if self.len < MOST_KEPT && !(at < self.len && self.kept[at].time == there.time) {
             self.kept.copy_within(at..self.len, at + 1);
             self.kept[at] = there;
             self.len += 1;
@@ -356,7 +356,7 @@ fn divide<V: Vector>([from, to]: [&Instant<V>; 2], gaps: [V::Scalar; 2], refuted
     let opening = if is_last { near.closing } else { -near.closing };
     if from.closing > zero && to.closing < zero {
         let part = from.closing / (from.closing - to.closing);
-        if part > number(AT_END) && part < number(1.0 - AT_END) {
+        if part > number(BESIDE_END) && part < number(1.0 - BESIDE_END) {
             return from.time + s * part;
         }
     }
@@ -402,7 +402,7 @@ fn secant<V: Vector>(from: &Instant<V>, to: &Instant<V>) -> V::Scalar {
 fn least_of_cubic<V: Vector>(from: &Instant<V>, to: &Instant<V>) -> V::Scalar {
     let (h, number) = (to.time - from.time, V::Scalar::from_f64);
     let slower = from.closing - to.closing;
-    if !(slower.abs() > (from.error + to.error) / h.abs() * number(NOISE)) {
+    if !(slower.abs() > (from.error + to.error) / h.abs() * number(NOISE_OF_SPEED)) {
         return secant(from, to);
     }
     let bent = number(3.0) * (from.distance - to.distance) / h - from.closing - to.closing;

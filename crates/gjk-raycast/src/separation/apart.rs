@@ -82,14 +82,14 @@ pub(crate) fn direct<T: Shapes + ?Sized>(
 }
 
 /// Two bodies before a search: the difference of their cores, and the unit of its lengths.
-pub(crate) struct Search<'a, V: Vector> {
+pub(crate) struct FirstSearch<'a, V: Vector> {
     pub(crate) pair: AnyPair<'a, V>,
     pub(crate) frame: Frame<V>,
     /// The sizes of both cores, their radii and their offset, in the world's unit.
     pub(super) size: V::Scalar,
 }
 
-impl<'a, V: Vector> Search<'a, V> {
+impl<'a, V: Vector> FirstSearch<'a, V> {
     #[inline(always)]
     pub(crate) fn new(shapes: &'a (dyn Shapes<Vector = V> + 'a), cores: [&'a Core<V>; 2]) -> Self {
         let mut pair = Pair::new(shapes, cores);
@@ -119,11 +119,17 @@ impl<'a, V: Vector> Search<'a, V> {
         Some(measured(state, &mut self.pair, frame, options, observer))
     }
 
+    /// A bound on the [error of points](error_of_points) of the difference, in the unit.
+    #[inline(always)]
+    pub(super) fn error(&self) -> V::Scalar {
+        error_of_points(&self.pair, self.size) * self.frame.per_unit + lost_to_underflow(self.frame.scale)
+    }
+
     /// The signed distance of bodies between whose cores GJK has found a plane, if they are apart by more than a few
     /// errors; all is computed as [`separation`](super::separation()) would.
     #[inline(always)]
     pub(crate) fn apart(&self, state: &Gjk<V>) -> Option<SignedDistance<V>> {
-        let (pair, Frame { scale, per_unit, error, radius, .. }) = (&self.pair, self.frame);
+        let (pair, Frame { scale, error, radius, .. }) = (&self.pair, self.frame);
         // NaN is not apart.
         if !(state.length - radius > error * Scalar::from_f64(NEAR)) {
             return None;
@@ -133,7 +139,7 @@ impl<'a, V: Vector> Search<'a, V> {
         for (corner, weight, witness) in state.simplex.corners() {
             (point, points, sum) = (point + corner * weight, points.plus(witness, weight), sum + weight);
         }
-        let error = error_of_points(pair, self.size) * per_unit + lost_to_underflow(scale);
+        let error = self.error();
         let reached = (point / sum).norm() + error;
         let radius = pair.radius();
         let (lower, upper) = ((state.lower - error) * scale - radius, reached * scale - radius);
@@ -209,13 +215,13 @@ mod tests {
     fn apart(a: &impl SupportMap<Vector = DVec3>, b: &impl SupportMap<Vector = DVec3>) -> Option<bool> {
         let shapes = Both::<_, _>::new(a, b);
         let cores = shapes.cores();
-        let mut search = Search::new(&shapes, cores.each_ref());
+        let mut search = FirstSearch::new(&shapes, cores.each_ref());
         let mut state = Gjk::new(search.frame.offset);
         let (touching, options) = (search.frame.radius, GjkOptions::new(state.normal, 200));
         let end = search.run(&mut state, touching, options, &mut Observer::none());
         let known = search.apart(&state).filter(|_| end == Some(End::Separated))?;
         let wanted = Wanted::new(OfOverlap::Known, SignedDistanceOptions::default(), None);
-        let mut cores = Cores::new(Search::new(&shapes, cores.each_ref()));
+        let mut cores = Cores::new(FirstSearch::new(&shapes, cores.each_ref()));
         let found = separation::<_, false>(&mut cores, &wanted, Begun::Nothing, &mut Observer::none());
         let all = found.distance(&cores, &wanted);
         let numbers = (known.signed_distance, known.lower, known.upper, known.iterations);

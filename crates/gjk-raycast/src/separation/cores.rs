@@ -5,12 +5,11 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::Wanted;
-use super::apart::{Search, error_of_points, measured};
+use super::apart::{FirstSearch, measured};
 use super::near::{NearContact, Uncertainty};
 use crate::body::{AnyPair, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, first_direction};
 use crate::observer::Observer;
-use crate::unit::lost_to_underflow;
 
 /// A support point of the difference, and its points of both cores.
 #[derive(Clone, Copy, Debug)]
@@ -45,9 +44,10 @@ pub(crate) struct Cores<'a, V: Vector> {
 
 impl<'a, V: Vector> Cores<'a, V> {
     #[inline(always)]
-    pub(crate) fn new(Search { pair, frame, size }: Search<'a, V>) -> Self {
+    pub(crate) fn new(search: FirstSearch<'a, V>) -> Self {
+        let error = search.error();
+        let FirstSearch { pair, frame, size } = search;
         let radii = [pair.core_a.radius, pair.core_b.radius];
-        let error = error_of_points(&pair, size) * frame.per_unit + lost_to_underflow(frame.scale);
         let (zero, lost_in_offset, size) = (Scalar::ZERO, V::ZERO, size * frame.per_unit);
         Self {
             pair,

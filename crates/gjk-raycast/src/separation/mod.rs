@@ -21,7 +21,7 @@ use crate::body::{Pair, PointPair, Shapes};
 use crate::gjk::{End, Gjk};
 use crate::observer::Observer;
 use crate::{Status, SubAlgorithm};
-pub(crate) use apart::{Search, direct, slack};
+pub(crate) use apart::{FirstSearch, direct, slack};
 pub(crate) use cores::Cores;
 pub use distances::{Distance, SignedDistance, SignedDistanceOptions};
 pub(crate) use near::{FromContact, NearContact, ProjectedFace, Uncertainty, across_corners};
@@ -119,8 +119,30 @@ pub(crate) enum Begun<'s, V: Vector> {
     Nothing,
     /// The cores of two boxes without radii that may overlap.
     Boxes(&'s [Parallelotope<V>; 2]),
-    /// The state of a [first search](Search::run), and how it ended.
+    /// The state of a [first search](FirstSearch::run), and how it ended.
     Searched(&'s mut Gjk<V>, End),
+}
+
+/// The depth of two boxes, if it has a closed form. Of other cores those are peeled that overlapped in the last frame:
+/// they do so still, if no plane across its normal tells them apart.
+#[cfg(feature = "alloc")]
+#[inline(always)]
+fn known_before_search<V: Vector>(
+    cores: &mut Cores<'_, V>,
+    begun: &Begun<'_, V>,
+    axis: Option<V>,
+) -> Option<Separation<V>> {
+    if let Begun::Boxes(parts) = begun
+        && let Some(known) = cores.closed_form(parts, axis)
+        && known.inner > Scalar::ZERO
+    {
+        return Some(Separation::of_closed_form(known));
+    }
+    let is_warm = axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
+    if is_warm {
+        let _ = cores.peel();
+    }
+    None
 }
 
 /// The separation of two cores, and their depth. Both are compiled once for all callers, so that a program without
@@ -144,18 +166,8 @@ pub(crate) fn separation<V: Vector, const IS_DEPTH: bool>(
         (state, end)
     } else {
         #[cfg(feature = "alloc")]
-        if IS_DEPTH {
-            if let Begun::Boxes(parts) = begun
-                && let Some(known) = cores.closed_form(parts, options.axis)
-                && known.inner > Scalar::ZERO
-            {
-                return Separation::of_closed_form(known);
-            }
-            // Cores that overlapped in the last frame do so still, if no plane across its normal tells them apart.
-            let is_warm = options.axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
-            if is_warm {
-                let _ = cores.peel();
-            }
+        if IS_DEPTH && let Some(known) = known_before_search(cores, &begun, options.axis) {
+            return known;
         }
         closest = cores.closest_points();
         // If the closest points are known, there is nothing to search near contact.

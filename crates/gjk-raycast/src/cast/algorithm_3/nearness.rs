@@ -22,7 +22,7 @@ use crate::cast::bracket::Bracket;
 use crate::simplex::{Closest, Simplex};
 
 /// The most support points, for each of both ends. Beside an edge it takes two or three.
-const MAX_LOOKS: usize = 8;
+const LOOKS_BESIDE_END: usize = 8;
 
 /// Whether points of the body are known near both bounds, given that a point of the body is on the line at `on`. Bounds
 /// without an upper one, or too deep to be told converged, are left as they are.
@@ -42,7 +42,7 @@ pub(in crate::cast) fn draw_near<V: Vector>(
     let is_near = |bracket: &mut Bracket<'_, V>, end: usize| {
         let (mut simplex, mut tilted) = (Simplex::new(), contact.normal);
         simplex.push(core_point, V::ZERO, PointPair::default());
-        for _ in 0..MAX_LOOKS {
+        for _ in 0..LOOKS_BESIDE_END {
             let x = bracket.line().at(bracket.ends()[end]);
             let Ok(Closest { v, face, weights }) = closest(bracket, &simplex, |p| x - p, V::DIM) else { break };
             let length = v.norm();
