@@ -11,6 +11,7 @@ use num_traits::Float;
 use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error as _};
 use serde::ser::{Error as _, Serialize, Serializer};
 
+use crate::contact::MANIFOLD_POINTS;
 use crate::{Contact, ContactPoint, HalfSpace, SignedDistance};
 
 /// Vectors that can be written and read, with their coordinates, as all are.
@@ -94,7 +95,7 @@ impl<V: VectorData> Serialize for Contact<V> {
 impl<'de, V: VectorData> Deserialize<'de> for Contact<V> {
     fn deserialize<D: Deserializer<'de>>(data: D) -> Result<Self, D::Error> {
         let read: Manifold<V, SignedDistance<V>, Vec<ContactPoint<V>>> = Manifold::deserialize(data)?;
-        if !(1..=Self::MANIFOLD_POINTS).contains(&read.points.len()) {
+        if !(1..=MANIFOLD_POINTS).contains(&read.points.len()) {
             return Err(D::Error::invalid_length(read.points.len(), &"one to four points"));
         }
         Ok(Self::new(read.normal, read.distance, read.points))

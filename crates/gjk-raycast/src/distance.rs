@@ -5,10 +5,10 @@ use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once, compiled_t
 use num_traits::Float as _;
 
 use crate::body::{Both, Shapes};
-use crate::gjk::{End, Gjk, GjkOptions, first_direction};
+use crate::gjk::{Gjk, GjkOptions, first_direction};
 use crate::observer::Observer;
 use crate::options::{MAX_ITERATIONS, MayBeLean, Rare, options};
-use crate::separation::{Begun, Cores, FirstSearch, OfOverlap, RareInDistances, Wanted, direct, separation};
+use crate::separation::{Begun, Cores, Enough, FirstSearch, OfOverlap, RareInDistances, Wanted, direct, separation};
 use crate::shape::Shape;
 use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, SubAlgorithm};
 
@@ -216,13 +216,11 @@ fn searched<V: Vector>(
     let gjk_options = GjkOptions { limit, tolerance, sub_algorithm, ..GjkOptions::new(state.normal, max_iterations) };
     let touching = search.frame.radius;
     let end = search.run(&mut state, touching, gjk_options, observer);
-    if end == Some(End::Separated)
-        && let Some(known) = search.apart(&state)
+    let enough = Enough { width: search.frame.widest(), tolerance, limit };
+    if let Some(end) = end
+        && let Some(known) = search.apart(&state, end, enough)
     {
-        let allowed = search.frame.widest() + tolerance.max(Scalar::ZERO) * known.lower;
-        if known.upper - known.lower <= allowed || known.lower > limit {
-            return Distance::of_apart(known);
-        }
+        return Distance::of_apart(known);
     }
     let begun = end.map_or(Begun::Nothing, |end| Begun::Searched(&mut state, end));
     searched_closely(search, begun, (axis, limit), options, observer)

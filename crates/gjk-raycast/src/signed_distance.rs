@@ -4,10 +4,10 @@ use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use crate::body::{Both, Shapes, TracedSupport as _};
-use crate::gjk::{End, Gjk, GjkOptions, first_direction};
+use crate::gjk::{Gjk, GjkOptions, first_direction};
 use crate::observer::Observer;
 use crate::separation::{
-    Begun, Cores, FirstSearch, OfOverlap, RareInDistances, Separation, Wanted, direct, separation,
+    Begun, Cores, Enough, FirstSearch, OfOverlap, RareInDistances, Separation, Wanted, direct, separation,
 };
 use crate::shape::Shape;
 use crate::{Iterate, SignedDistance, SignedDistanceOptions, Status};
@@ -129,13 +129,11 @@ fn searched<V: Vector>(
     let Some(end) = search.run(&mut state, Scalar::ZERO, options, observer) else {
         return searched_closely(search, Begun::Nothing, wanted, observer);
     };
-    if end == End::Separated
-        && let Some(known) = search.apart(&state)
-        && (known.upper - known.lower <= search.frame.widest() * Scalar::from_f64(2.0) || known.lower > limit)
-    {
-        return known;
+    let width = search.frame.widest() * Scalar::from_f64(2.0);
+    match search.apart(&state, end, Enough { width, tolerance: Scalar::ZERO, limit }) {
+        Some(known) => known,
+        None => searched_closely(search, Begun::Searched(&mut state, end), wanted, observer),
     }
-    searched_closely(search, Begun::Searched(&mut state, end), wanted, observer)
 }
 
 /// The signed distance of bodies that are not plainly apart, after a first search for it.

@@ -82,16 +82,6 @@ impl Errors {
 }
 
 impl<S: SupportMap> Posed<S> {
-    #[inline(always)]
-    fn at(
-        shape: S,
-        rotation: <S::Vector as Vector>::Matrix,
-        errors: Errors,
-        translation: S::Vector,
-    ) -> Result<Self, InvalidShape> {
-        Self::placed(shape, rotation, errors, finite("translation", translation)?)
-    }
-
     /// The shape in a pose that has been checked.
     #[inline(always)]
     fn placed(
@@ -119,7 +109,7 @@ impl<S: SupportMap> Posed<S> {
         translation: S::Vector,
     ) -> Result<Self, InvalidShape> {
         let rotation = rotation.checked("rotation")?.matrix();
-        Self::at(shape, rotation, Errors::of_rotation::<S::Vector>(), translation)
+        Self::placed(shape, rotation, Errors::of_rotation::<S::Vector>(), finite("translation", translation)?)
     }
 
     /// The shape moved by a rotation matrix, then by `translation`: for poses given as glam's `DAffine3` or as a
@@ -138,7 +128,8 @@ impl<S: SupportMap> Posed<S> {
             return Self::translated(shape, translation);
         }
         let polished = polished(rotation);
-        Self::at(shape, polished, if polished == rotation { Errors::NONE } else { POLISHED }, translation)
+        let errors = if polished == rotation { Errors::NONE } else { POLISHED };
+        Self::placed(shape, polished, errors, finite("translation", translation)?)
     }
 
     /// Another shape in the pose of this one: the numbers are those that the same constructor would make for it.
@@ -182,7 +173,7 @@ impl<S: SupportMap> Posed<S> {
         let known = Errors::known::<S::Vector>();
         let entry = crate::error::known_error("rotation_error", rotation_error, &known.each_ref().map(|e| e.entry))?;
         match known.into_iter().find(|errors| errors.entry == entry && entry > 0.0) {
-            Some(errors) => Self::at(shape, proper(rotation)?, errors, translation),
+            Some(errors) => Self::placed(shape, proper(rotation)?, errors, finite("translation", translation)?),
             None => Self::from_matrix(shape, rotation, translation),
         }
     }

@@ -6,7 +6,7 @@ use crate::symmetric::axes_across;
 use crate::{SignedDistance, Trajectory};
 
 /// As many points as a manifold has.
-pub(super) const MANIFOLD_POINTS: usize = 4;
+pub(crate) const MANIFOLD_POINTS: usize = 4;
 
 /// The answer of [`contact`](crate::contact).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,10 +21,6 @@ pub struct Contact<V: Vector> {
 }
 
 impl<V: Vector> Contact<V> {
-    /// As many points as a manifold has.
-    #[cfg(feature = "serde")]
-    pub(crate) const MANIFOLD_POINTS: usize = MANIFOLD_POINTS;
-
     /// With the first of the points, as many as a manifold has.
     pub(crate) fn new(
         normal: V,

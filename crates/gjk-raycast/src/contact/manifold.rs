@@ -5,11 +5,10 @@ use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::clip::{Clipped, ClippedCorners, clip};
-use super::contact_point::MANIFOLD_POINTS;
 use super::outline::{ContactPart, ContactPlane, Outline, ROOM};
 use super::reduction::{Candidate, Rank, WORTHWHILE, reduced};
 use super::surface::{MAX_SUPPORT_POINTS, Side};
-use super::{Contact, ContactPoint};
+use super::{Contact, ContactPoint, MANIFOLD_POINTS};
 use crate::SignedDistance;
 use crate::shape::Shape;
 use crate::symmetric::{Across, axes_across, cross, dot, way};

@@ -12,6 +12,7 @@ use num_traits::Float as _;
 
 use crate::{SignedDistanceOptions, signed_distance};
 pub(crate) use clip::{ClippedCorners, clip, cut};
+pub(crate) use contact_point::MANIFOLD_POINTS;
 pub use contact_point::{Contact, ContactPoint};
 use manifold::manifold;
 pub(crate) use manifold::manifold_over_plane;

@@ -3,7 +3,7 @@
 use convex_support::Scalar;
 use smallvec::SmallVec;
 
-use super::contact_point::MANIFOLD_POINTS;
+use super::MANIFOLD_POINTS;
 use super::outline::ROOM;
 use crate::symmetric::{Across, cross, way};
 

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use convex_support::{Scalar, Vector};
 
-use super::planes::{minus, numbers};
+use super::planes::{dot, length, minus, numbers};
 use super::{Law, Numbers, Report};
 use crate::{Cast, Outcome, Status};
 
@@ -113,6 +113,12 @@ impl Told {
 
 /// How far the ray's point, or body `a`, is before the plane across a normal at a time.
 pub(super) type Beyond<'f> = &'f dyn Fn(Numbers, f64) -> [f64; 2];
+
+/// The same for a motion without an end: what does not go towards the plane, by more than its own error, is before it
+/// for ever.
+pub(super) fn beyond_without_end(n: Numbers, velocity: Numbers, error: f64) -> [f64; 2] {
+    if dot(n, velocity) > length(n) * error { [f64::INFINITY; 2] } else { [f64::NEG_INFINITY, f64::INFINITY] }
+}
 
 /// Bounds on the signed distance of the bodies at a time.
 pub(super) type Gap<'f> = &'f dyn Fn(f64) -> Option<[f64; 2]>;

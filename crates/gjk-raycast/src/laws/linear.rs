@@ -5,13 +5,13 @@ use alloc::vec::Vec;
 
 use convex_support::{Posed, Scalar, Vector};
 
-use super::cast::{Casts, Told};
+use super::cast::{Casts, Told, beyond_without_end};
 use super::planes::{dot, length, numbers, stated};
 use super::ray::ends;
 use super::{AnyShape, Law, Numbers, PairPlanes, Report, Scale};
 use crate::{
-    CastMethod, Impact, LinearCastOptions, Motion, SignedDistance, SignedDistanceOptions, StartInContact, WarmStart,
-    linear_cast as ask, signed_distance,
+    CastMethod, Impact, LinearCast, LinearCastOptions, Motion, SignedDistance, SignedDistanceOptions, StartInContact,
+    WarmStart, linear_cast as ask, signed_distance,
 };
 
 /// Casts two bodies with several options, methods and starts, in both orders, and with ends at the hit and beside it.
@@ -35,6 +35,56 @@ pub fn linear_cast_judged<V: Vector>(
     planes: PairPlanes<'_>,
 ) -> Report {
     let mut report = Report::default();
+    let Some((plain, told)) = asked([a, b], motion, options, starts) else { return report };
+    let velocity = motion.velocity_a - motion.velocity_b;
+    let velocities = [numbers(motion.velocity_a), numbers(motion.velocity_b)];
+    let (relative, speeds) = (numbers(velocity), length(velocities[0]) + length(velocities[1]));
+    let target = options.target_distance.as_f64().max(0.0);
+    let mut scale = Scale::of(a, b);
+    scale.size += length(relative) * plain.outcome.hit().map_or(0.0, |hit| hit.time.as_f64().abs());
+    scale.size += target;
+    let beyond = |n: Numbers, at: f64| {
+        if at.is_finite() {
+            return planes.apart.beyond(n, &[(at, velocities[0]), (-at, velocities[1])]);
+        }
+        beyond_without_end(n, relative, 4.0 * V::Scalar::EPSILON.as_f64() * speeds)
+    };
+    let distance_at = |time: V::Scalar, options: SignedDistanceOptions<V>| {
+        let moved = Posed::translated(a, velocity * time).ok()?;
+        Some(signed_distance(&moved as AnyShape<'_, V>, b, options))
+    };
+    let start = signed_distance(a, b, SignedDistanceOptions::new());
+    let begins_apart = start.lower.as_f64() > target;
+    let is_reported = options.start_in_contact == StartInContact::Report || begins_apart;
+    let gap = |time: f64| {
+        let apart = distance_at(V::Scalar::from_f64(time), SignedDistanceOptions::new())?;
+        let lost = 4.0 * scale.epsilon * (scale.place + time.abs() * speeds);
+        Some([apart.lower.as_f64() - lost, apart.upper.as_f64() + lost])
+    };
+    let casts = Casts {
+        query: "linear_cast",
+        unit: scale.unit(),
+        size: scale.size,
+        target,
+        gap: is_reported.then_some(&gap),
+        beyond: is_reported.then_some(&beyond),
+        normals: starts.iter().map(|&n| numbers(n)).chain([numbers(start.normal)]).collect(),
+    };
+    casts.judge(&told, &mut report);
+    if !is_reported && target == 0.0 {
+        let at = |time: V::Scalar| distance_at(time, SignedDistanceOptions::new().with_axis(start.normal));
+        deeper(&told, &start, &scale, (&at, relative), &beyond, &mut report);
+    }
+    report
+}
+
+/// The answer by default, and what was told by all ways of asking; `None` if the question is refused.
+fn asked<V: Vector>(
+    [a, b]: [AnyShape<'_, V>; 2],
+    motion: Motion<V>,
+    options: LinearCastOptions<V>,
+    starts: &[V],
+) -> Option<(LinearCast<V>, Vec<Told>)> {
     let mut told = Vec::new();
     let mut cast = |how, options: LinearCastOptions<V>, is_reversed: bool| {
         let reversed = Motion { velocity_a: motion.velocity_b, velocity_b: motion.velocity_a };
@@ -55,7 +105,7 @@ pub fn linear_cast_judged<V: Vector>(
         tolerance: options.tolerance,
         ..LinearCastOptions::lean()
     };
-    let Some(plain) = cast("by default", options, false) else { return report };
+    let plain = cast("by default", options, false)?;
     cast("in the other order", options, true);
     cast("lean", lean, false);
     cast("by GJK", options.with_method(CastMethod::Gjk), false);
@@ -72,52 +122,7 @@ pub fn linear_cast_judged<V: Vector>(
         cast("to an end, by GJK", options.with_method(CastMethod::Gjk), false);
         cast("to an end, lean", lean.with_max_time(end), false);
     }
-
-    let mut scale = Scale::of(a, b);
-    let velocity = motion.velocity_a - motion.velocity_b;
-    let relative = numbers(velocity);
-    scale.size += length(relative) * hit.map_or(0.0, |hit| hit.time.as_f64().abs());
-    let target = options.target_distance.as_f64().max(0.0);
-    scale.size += target;
-    let velocities = [numbers(motion.velocity_a), numbers(motion.velocity_b)];
-    let beyond = |n: Numbers, at: f64| {
-        if at.is_finite() {
-            planes.apart.beyond(n, &[(at, velocities[0]), (-at, velocities[1])])
-        } else if dot(n, relative)
-            > 4.0 * V::Scalar::EPSILON.as_f64() * length(n) * (length(velocities[0]) + length(velocities[1]))
-        {
-            [f64::INFINITY; 2]
-        } else {
-            [f64::NEG_INFINITY, f64::INFINITY]
-        }
-    };
-    let start = signed_distance(a, b, SignedDistanceOptions::new());
-    let begins_apart = start.lower.as_f64() > target;
-    let is_reported = options.start_in_contact == StartInContact::Report || begins_apart;
-    let gap = |time: f64| {
-        let moved = Posed::translated(a, velocity * V::Scalar::from_f64(time)).ok()?;
-        let apart = signed_distance(&moved as AnyShape<'_, V>, b, SignedDistanceOptions::new());
-        let lost = 4.0 * scale.epsilon * (scale.place + time.abs() * (length(velocities[0]) + length(velocities[1])));
-        Some([apart.lower.as_f64() - lost, apart.upper.as_f64() + lost])
-    };
-    let casts = Casts {
-        query: "linear_cast",
-        unit: scale.unit(),
-        size: scale.size,
-        target,
-        gap: is_reported.then_some(&gap),
-        beyond: is_reported.then_some(&beyond),
-        normals: starts.iter().map(|&n| numbers(n)).chain([numbers(start.normal)]).collect(),
-    };
-    casts.judge(&told, &mut report);
-    if !is_reported && target == 0.0 {
-        let at = |time: V::Scalar| {
-            let moved = Posed::translated(a, velocity * time).ok()?;
-            Some(signed_distance(&moved as AnyShape<'_, V>, b, SignedDistanceOptions::new().with_axis(start.normal)))
-        };
-        deeper(&told, &start, &scale, (&at, relative), &beyond, &mut report);
-    }
-    report
+    Some((plain, told))
 }
 
 /// The signed distance of the bodies at a time.

@@ -5,12 +5,12 @@ use alloc::vec::Vec;
 
 use convex_support::{Point, Scalar, Vector};
 
-use super::cast::{Casts, Told};
-use super::planes::{Stated, dot, length, numbers};
+use super::cast::{Casts, Told, beyond_without_end};
+use super::planes::{Stated, length, numbers};
 use super::{AnyShape, Law, Numbers, Planes, Report, Scale};
 use crate::{
-    CastMethod, Ray, RayCastOptions, RayExit, RayHit, SignedDistanceOptions, Status, WarmStart, ray_cast, ray_exit,
-    signed_distance,
+    CastMethod, Ray, RayCast, RayCastOptions, RayExit, RayHit, SignedDistanceOptions, Status, WarmStart, ray_cast,
+    ray_exit, signed_distance,
 };
 
 /// Casts a ray with several options, methods and starts, and with ends at its own hit and beside it; and asks where it
@@ -30,52 +30,17 @@ pub fn ray_judged<V: Vector>(
     let mut report = Report::default();
     let (source, direction) = (numbers(ray.source), numbers(ray.direction));
     let Ok(source_point) = Point::new(ray.source) else { return report };
-    let mut told = Vec::new();
-    let mut ask = |how, options: RayCastOptions<V>| {
-        let cast = ray_cast(target, ray, options).ok()?;
-        let mut one = Told::new(how, options.max_lambda, &cast, |hit: &RayHit<V>| (hit.lambda, hit.normal));
-        one.tolerance = options.tolerance.as_f64();
-        told.push(one);
-        Some(cast)
-    };
-    let lean = RayCastOptions {
-        min_lambda: options.min_lambda,
-        max_lambda: options.max_lambda,
-        tolerance: options.tolerance,
-        ..RayCastOptions::lean()
-    };
-    let Some(plain) = ask("by default", options) else { return report };
-    ask("lean", lean);
-    ask("by GJK", options.with_method(CastMethod::Gjk));
-    ask("lean, by GJK", lean.with_method(CastMethod::Gjk));
-    let next = plain.warm_start(None);
-    for start in starts.iter().map(|&axis| Some(WarmStart::new(axis))).chain([next]) {
-        ask("warm", options.with_warm_start(start));
-        ask("warm, by GJK", options.with_method(CastMethod::Gjk).with_warm_start(start));
-    }
-    let hit = plain.outcome.hit();
-    for end in ends([hit.map(|hit| hit.lambda), Some(plain.lower), Some(plain.upper)]) {
-        let options = options.with_max_lambda(end);
-        ask("to an end", options);
-        ask("to an end, warm", options.with_warm_start(next));
-        ask("to an end, by GJK", options.with_method(CastMethod::Gjk));
-        ask("to an end, lean", lean.with_max_lambda(end));
-    }
-
+    let Some((plain, told)) = asked(target, ray, options, starts) else { return report };
     let mut scale = Scale::of(target, &source_point);
     // The plane of a cast is through a point of the line.
-    scale.size += length(direction) * hit.map_or(0.0, |hit| hit.lambda.as_f64().abs());
+    scale.size += length(direction) * plain.outcome.hit().map_or(0.0, |hit| hit.lambda.as_f64().abs());
     let beyond =
         |n: Numbers, at: f64| planes.beyond(n, &[(1.0, source), (if at.is_finite() { at } else { 0.0 }, direction)]);
-    // A ray without an end is before a plane for ever if it does not go towards it.
     let to_the_end = |n: Numbers, at: f64| {
         if at.is_finite() {
-            beyond(n, at)
-        } else if dot(n, direction) > 4.0 * f64::EPSILON * length(n) * length(direction) {
-            [f64::INFINITY; 2]
-        } else {
-            [f64::NEG_INFINITY, f64::INFINITY]
+            return beyond(n, at);
         }
+        beyond_without_end(n, direction, 4.0 * f64::EPSILON * length(direction))
     };
     let gap = |time: f64| {
         let point = Point::new(ray.at(V::Scalar::from_f64(time))).ok()?;
@@ -96,11 +61,53 @@ pub fn ray_judged<V: Vector>(
     };
     casts.judge(&told, &mut report);
 
-    let exits = [("by default", options), ("lean", lean), ("by GJK", options.with_method(CastMethod::Gjk))];
+    let exits = [("by default", options), ("lean", lean(options)), ("by GJK", options.with_method(CastMethod::Gjk))];
     let exits: Vec<_> =
         exits.into_iter().filter_map(|(how, options)| Some((how, ray_exit(target, ray, options).ok()?))).collect();
     leaves(&casts, &told, &exits, &beyond, &mut report);
     report
+}
+
+/// The same options without the rare parts.
+fn lean<V: Vector>(options: RayCastOptions<V>) -> RayCastOptions<V> {
+    let RayCastOptions { min_lambda, max_lambda, tolerance, .. } = options;
+    RayCastOptions { min_lambda, max_lambda, tolerance, ..RayCastOptions::lean() }
+}
+
+/// The answer by default, and what was told by all ways of asking; `None` if the question is refused.
+fn asked<V: Vector>(
+    target: AnyShape<'_, V>,
+    ray: Ray<V>,
+    options: RayCastOptions<V>,
+    starts: &[V],
+) -> Option<(RayCast<V>, Vec<Told>)> {
+    let mut told = Vec::new();
+    let mut ask = |how, options: RayCastOptions<V>| {
+        let cast = ray_cast(target, ray, options).ok()?;
+        let mut one = Told::new(how, options.max_lambda, &cast, |hit: &RayHit<V>| (hit.lambda, hit.normal));
+        one.tolerance = options.tolerance.as_f64();
+        told.push(one);
+        Some(cast)
+    };
+    let lean = lean(options);
+    let plain = ask("by default", options)?;
+    ask("lean", lean);
+    ask("by GJK", options.with_method(CastMethod::Gjk));
+    ask("lean, by GJK", lean.with_method(CastMethod::Gjk));
+    let next = plain.warm_start(None);
+    for start in starts.iter().map(|&axis| Some(WarmStart::new(axis))).chain([next]) {
+        ask("warm", options.with_warm_start(start));
+        ask("warm, by GJK", options.with_method(CastMethod::Gjk).with_warm_start(start));
+    }
+    let hit = plain.outcome.hit();
+    for end in ends([hit.map(|hit| hit.lambda), Some(plain.lower), Some(plain.upper)]) {
+        let options = options.with_max_lambda(end);
+        ask("to an end", options);
+        ask("to an end, warm", options.with_warm_start(next));
+        ask("to an end, by GJK", options.with_method(CastMethod::Gjk));
+        ask("to an end, lean", lean.with_max_lambda(end));
+    }
+    Some((plain, told))
 }
 
 /// Numbers at which a cast may end: these, and their neighbours.

@@ -215,37 +215,45 @@ impl<S: SupportMap, O: SupportMap<Vector = S::Vector>> Growth<'_, S, O> {
         while faces.iter().flatten().any(|face| face.stop.is_none()) {
             for (column, ends) in faces.iter_mut().enumerate() {
                 for (end, face) in ends.iter_mut().enumerate().filter(|(_, face)| face.stop.is_none()) {
-                    let (from, limit) = (joint_box[column][end], self.limits[column][end]);
-                    if from == limit {
-                        face.stop = Some(FaceStop::Limit);
-                        continue;
-                    }
-                    if self.boxes >= self.max_boxes {
-                        face.stop = Some(FaceStop::Work);
-                        continue;
-                    }
-                    let to = if end == 0 {
-                        Float::max(from - face.step, limit)
-                    } else {
-                        Float::min(from + face.step, limit)
-                    };
-                    joint_box[column][end] = to;
-                    match self.prove(joint_box, Some((column, end))) {
-                        Ok(()) => face.step *= number(2.0),
-                        Err(InTheWay { bodies, values }) => {
-                            joint_box[column][end] = from;
-                            face.step = Float::min((to - from).abs(), face.step) * number(0.5);
-                            let short = (from - self.values[column]).abs() * number(SHORT);
-                            if face.step < Float::max(short, shortest[column]) {
-                                face.stop = Some(FaceStop::Bodies { bodies, values });
-                            }
-                        }
-                    }
+                    self.step(joint_box, (column, end), shortest[column], face);
                 }
             }
         }
         let stop = |face: GrowingFace<_>| face.stop.unwrap_or(FaceStop::Work);
         faces.into_iter().map(|ends| ends.map(stop)).collect()
+    }
+
+    /// Moves one face of a box by one step, if it can: the next step is twice as long then, and half as long otherwise.
+    /// A face stops for good where its step is no longer worth the work.
+    fn step(
+        &mut self,
+        joint_box: &mut [[ScalarOf<S>; 2]],
+        (column, end): (usize, usize),
+        shortest: ScalarOf<S>,
+        face: &mut GrowingFace<ScalarOf<S>>,
+    ) {
+        let number = ScalarOf::<S>::from_f64;
+        let (from, limit) = (joint_box[column][end], self.limits[column][end]);
+        if from == limit {
+            face.stop = Some(FaceStop::Limit);
+            return;
+        }
+        if self.boxes >= self.max_boxes {
+            face.stop = Some(FaceStop::Work);
+            return;
+        }
+        let to = if end == 0 { Float::max(from - face.step, limit) } else { Float::min(from + face.step, limit) };
+        joint_box[column][end] = to;
+        let Err(InTheWay { bodies, values }) = self.prove(joint_box, Some((column, end))) else {
+            face.step *= number(2.0);
+            return;
+        };
+        joint_box[column][end] = from;
+        face.step = Float::min((to - from).abs(), face.step) * number(0.5);
+        let short = (from - self.values[column]).abs() * number(SHORT);
+        if face.step < Float::max(short, shortest) {
+            face.stop = Some(FaceStop::Bodies { bodies, values });
+        }
     }
 
     /// Proves that a box is free, of which one face may be new; or else what is in the way, and values at which it is

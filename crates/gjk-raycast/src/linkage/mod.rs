@@ -22,7 +22,6 @@ pub use grown_box::{FaceStop, GrownBox};
 pub use joint::{Joint, JointKind, Link};
 pub use joint_box::{JointBox, JointBoxOutcome};
 pub use joint_trajectory::{JointBounds, JointState, JointTrajectory};
-pub(crate) use path_answer::ProvedSteps;
 pub use path_answer::{BodyPair, FreeBox, FreeInterval, Met, NearestOnPath, Path, PathClearance, PathContact};
 pub use robot::Linkage;
 pub use sweep::PathWorkspace;

@@ -1,17 +1,15 @@
 //! Whether a linkage touches anything along a path.
 
-use core::ops::ControlFlow;
-
 use convex_support::{Core, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::error::LinkageError;
 use super::joint_trajectory::JointTrajectory;
 use super::link_motion::{LinkMotion, PathEdge};
-use super::path_answer::{FreeInterval, Met, Path, PathContact, ProvedSteps};
+use super::path_answer::{FreeInterval, Met, Path, PathContact};
 use super::robot::{LinkView, Linkage};
 use super::sweep::{Near, PathWorkspace, Sweep};
-use crate::motion::checked;
+use crate::motion::{ProvedSteps, checked};
 use crate::{Body, MotionCast, MotionCastOptions, Outcome, RayCastError, Scene, StartInContact};
 
 impl<S: SupportMap> Linkage<S> {
@@ -216,23 +214,18 @@ impl<S: SupportMap> Linkage<S> {
                     let met = Met::Obstacle(near.other);
                     self.cast((index, met), near, &motion, (obstacle, at), options, &mut observer)?
                 } else if let Some(instance) = scene.instance(near.other) {
-                    let (mut first, mut refused) = (None, Ok(()));
+                    let mut first = None;
                     let part = options.with_max_time(near.to - near.from);
                     let way = observer.is_none().then_some((&motion, &part));
                     let shape = &self.bodies[self.skeleton.views[near.view].link][near.body];
-                    instance.each_on_way(shape, way, &mut |member, _, placed, around| {
+                    instance.each_on_way(shape, way, |member, placed, around| {
                         let met = Met::Member { obstacle: near.other, member };
                         let against = (placed, Some(around.center()));
-                        match self.cast((index, met), near, &motion, against, options, &mut observer) {
-                            Ok(next) => first = first_of(first, next),
-                            Err(why) => {
-                                refused = Err(why);
-                                return ControlFlow::Break(());
-                            }
-                        }
-                        ControlFlow::Continue(part.max_time)
-                    });
-                    refused.map(|()| first)?
+                        let next = self.cast((index, met), near, &motion, against, options, &mut observer)?;
+                        first = first_of(first, next);
+                        Ok::<_, RayCastError>(())
+                    })?;
+                    first
                 } else {
                     None
                 };

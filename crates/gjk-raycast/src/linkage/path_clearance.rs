@@ -5,8 +5,6 @@
 //! over bodies and edges, less the width of its bracket. Of all other pairs the search only proves that they stay
 //! farther apart than that. The first target is the least distance at three times of the first edge.
 
-use core::ops::ControlFlow;
-
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
@@ -107,28 +105,21 @@ impl<S: SupportMap> Linkage<S> {
                     let next = self.clearance_of((index, met), near, &motion, body, options, *target)?;
                     return Ok(answer.see(next, target, options.tolerance).unwrap_or(duration));
                 }
-                let (mut end, mut refused) = (duration, Ok(()));
+                let mut end = duration;
                 if let Some(instance) = scene.instance(obstacle) {
                     let time = near.to - near.from;
                     let part = MotionCastOptions::new().with_max_time(time).with_target_distance(*target);
                     let way = target.is_finite().then_some((&motion, &part));
                     let shape = &self.bodies[self.skeleton.views[near.view].link][near.body];
-                    instance.each_on_way(shape, way, &mut |member, _, placed, _| {
+                    instance.each_on_way(shape, way, |member, placed, _| {
                         let met = Met::Member { obstacle, member };
-                        match self.clearance_of((index, met), near, &motion, placed, options, *target) {
-                            Ok(next) => {
-                                let at = answer.see(next, target, options.tolerance);
-                                end = at.map_or(end, |at| Float::min(end, at));
-                                ControlFlow::Continue(time)
-                            }
-                            Err(why) => {
-                                refused = Err(why);
-                                ControlFlow::Break(())
-                            }
-                        }
-                    });
+                        let next = self.clearance_of((index, met), near, &motion, placed, options, *target)?;
+                        let at = answer.see(next, target, options.tolerance);
+                        end = at.map_or(end, |at| Float::min(end, at));
+                        Ok::<_, LinkageError>(())
+                    })?;
                 }
-                refused.map(|()| end)
+                Ok(end)
             })?;
             (near_enough, answer.parts) = (sweep.target, answer.parts + sweep.parts);
             if answer.nearest.is_some_and(|nearest| nearest.least.upper == zero) {

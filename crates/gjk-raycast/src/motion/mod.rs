@@ -17,6 +17,7 @@ mod near_look;
 mod next_time;
 mod over_half_space;
 mod placed;
+mod proved_steps;
 mod rigid_motion;
 mod trajectory;
 
@@ -28,5 +29,6 @@ pub use first_contact::{MotionCast, MotionCastOptions, MotionIterate};
 pub(crate) use motion_cast::{check, checked};
 pub use motion_cast::{motion_cast, motion_cast_with};
 pub(crate) use placed::Moved;
+pub(crate) use proved_steps::ProvedSteps;
 pub use rigid_motion::Pose;
 pub use trajectory::{Displacement, MovingBall, RigidMotion, Trajectory, TurningPlane};

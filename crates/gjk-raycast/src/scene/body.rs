@@ -2,8 +2,7 @@
 
 use convex_support::{AngularVelocity as _, Scalar as _, ScalarOf, SupportMap, Vector};
 
-use crate::linkage::ProvedSteps;
-use crate::motion::clearance_within;
+use crate::motion::{ProvedSteps, clearance_within};
 use crate::{
     ChainMotion, Contact, Distance, DistanceOptions, HalfSpace, Impact, LinearCast, LinearCastOptions, Motion,
     MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate, Ray, RayCast, RayCastError,
@@ -130,18 +129,14 @@ impl<S: SupportMap> Body<S> {
     ) -> Result<MotionClearance<S::Vector>, RayCastError> {
         let half_space = match self {
             Self::Convex(body) => return motion_clearance(shape, motion, body, of_body, options),
-            Self::HalfSpace(half_space) if of_body == RigidMotion::default() => {
-                return half_space.motion_clearance(shape, motion, options);
-            }
             Self::HalfSpace(half_space) => half_space,
         };
-        let least = half_space.motion_clearance(shape, ChainMotion::new(&seen_from(of_body, motion)), options)?;
-        let place = of_body.displacement(least.time);
-        Ok(MotionClearance {
-            point_a: place.of(least.point_a),
-            point_b: place.of(least.point_b),
-            normal: least.normal.map(|normal| place.rotation() * normal),
-            ..least
+        let ask = |motion: &dyn Trajectory<Vector = _>| half_space.motion_clearance(shape, motion, options);
+        in_frame(of_body, motion, ask, |least| {
+            let place = of_body.displacement(least.time);
+            let [point_a, point_b] = [least.point_a, least.point_b].map(|point| place.of(point));
+            let normal = least.normal.map(|normal| place.rotation() * normal);
+            MotionClearance { point_a, point_b, normal, ..least }
         })
     }
 
@@ -207,20 +202,32 @@ impl<S: SupportMap> Body<S> {
     ) -> Result<MotionCast<S::Vector>, RayCastError> {
         let half_space = match self {
             Self::Convex(body) => return motion_cast_with(shape, motion, body, of_body, options, observer),
-            Self::HalfSpace(half_space) if of_body == RigidMotion::default() => {
-                return half_space.motion_cast_with(shape, motion, options, observer);
-            }
             Self::HalfSpace(half_space) => half_space,
         };
-        let seen = seen_from(of_body, motion);
-        let cast = half_space.motion_cast_with(shape, ChainMotion::new(&seen), options, observer)?;
-        let outcome = cast.outcome.map(|hit| {
-            let place = of_body.displacement(hit.time);
-            let normal = hit.normal.map(|normal| place.rotation() * normal);
-            Impact { point: place.of(hit.point), normal, ..hit }
-        });
-        Ok(MotionCast { outcome, ..cast })
+        let ask = |motion: &dyn Trajectory<Vector = _>| half_space.motion_cast_with(shape, motion, options, observer);
+        in_frame(of_body, motion, ask, |cast| {
+            let outcome = cast.outcome.map(|hit| {
+                let place = of_body.displacement(hit.time);
+                let normal = hit.normal.map(|normal| place.rotation() * normal);
+                Impact { point: place.of(hit.point), normal, ..hit }
+            });
+            MotionCast { outcome, ..cast }
+        })
     }
+}
+
+/// Asks about a motion as a moving frame sees it, and brings the answer back to the world. A frame at rest is the
+/// world.
+fn in_frame<V: Vector, R>(
+    of_frame: RigidMotion<V>,
+    motion: RigidMotion<V>,
+    ask: impl FnOnce(&dyn Trajectory<Vector = V>) -> Result<R, RayCastError>,
+    back: impl FnOnce(R) -> R,
+) -> Result<R, RayCastError> {
+    if of_frame == RigidMotion::default() {
+        return ask(&motion);
+    }
+    ask(&ChainMotion::new(&seen_from(of_frame, motion))).map(back)
 }
 
 /// A motion relative to a moving frame: first the motion, and then the inverse of the frame's.

@@ -272,21 +272,30 @@ impl<V: Vector> Instance<V> {
 
     /// Calls `visit` for the members that a shape may meet within the options' time, as for [`search`](Self::search), or
     /// for all members without a motion.
-    pub(crate) fn each_on_way<A: SupportMap<Vector = V> + ?Sized>(
+    pub(crate) fn each_on_way<A: SupportMap<Vector = V> + ?Sized, E>(
         &self,
         shape: &A,
         way: Option<(&impl Trajectory<Vector = V>, &MotionCastOptions<V>)>,
-        visit: &mut Visit<'_, V>,
-    ) {
+        mut visit: impl FnMut(usize, &Placed<'_, V>, Aabb<V>) -> Result<(), E>,
+    ) -> Result<(), E> {
         let zero = V::Scalar::ZERO;
+        let end = way.map_or(zero, |(_, options)| options.max_time);
+        let mut refused = Ok(());
+        let visit: &mut Visit<'_, V> = &mut |member, _, placed, around| match visit(member, placed, around) {
+            Ok(()) => ControlFlow::Continue(end),
+            Err(why) => {
+                refused = Err(why);
+                ControlFlow::Break(())
+            }
+        };
         // The search is over, so that a break no longer matters.
         let _ = match way {
             Some((motion, options)) => {
-                let limits = (zero, options.max_time);
-                self.search(&MovingBalls::new(shape, motion, options), limits, &mut 0, visit)
+                self.search(&MovingBalls::new(shape, motion, options), (zero, end), &mut 0, visit)
             }
             None => self.search(&BoxDistance::new(Aabb::everything()), (zero, zero), &mut 0, visit),
         };
+        refused
     }
 
     fn frame(&self) -> InstanceFrame<V> {

@@ -81,6 +81,22 @@ pub(crate) fn direct<T: Shapes + ?Sized>(
     })
 }
 
+/// The bracket on a distance that answers a question: one of this width and a part of its lower bound, or any beyond
+/// the limit.
+#[derive(Clone, Copy)]
+pub(crate) struct Enough<S> {
+    pub(crate) width: S,
+    pub(crate) tolerance: S,
+    pub(crate) limit: S,
+}
+
+impl<S: Scalar> Enough<S> {
+    #[inline(always)]
+    pub(crate) fn is(&self, lower: S, upper: S) -> bool {
+        upper - lower <= self.width + self.tolerance.max(S::ZERO) * lower || lower > self.limit
+    }
+}
+
 /// Two bodies before a search: the difference of their cores, and the unit of its lengths.
 pub(crate) struct FirstSearch<'a, V: Vector> {
     pub(crate) pair: AnyPair<'a, V>,
@@ -126,9 +142,12 @@ impl<'a, V: Vector> FirstSearch<'a, V> {
     }
 
     /// The signed distance of bodies between whose cores GJK has found a plane, if they are apart by more than a few
-    /// errors; all is computed as [`separation`](super::separation()) would.
+    /// errors and the bracket is narrow enough; all is computed as [`separation`](super::separation()) would.
     #[inline(always)]
-    pub(crate) fn apart(&self, state: &Gjk<V>) -> Option<SignedDistance<V>> {
+    pub(crate) fn apart(&self, state: &Gjk<V>, end: End, enough: Enough<V::Scalar>) -> Option<SignedDistance<V>> {
+        if end != End::Separated {
+            return None;
+        }
         let (pair, Frame { scale, error, radius, .. }) = (&self.pair, self.frame);
         // NaN is not apart.
         if !(state.length - radius > error * Scalar::from_f64(NEAR)) {
@@ -147,7 +166,7 @@ impl<'a, V: Vector> FirstSearch<'a, V> {
         let lower = lower - (slack(lower, radius) + least());
         let upper = upper + (slack(upper, radius) + least());
         // NaN bounds nothing.
-        if !(lower > Scalar::ZERO && lower <= upper && upper.is_finite()) {
+        if !(lower > Scalar::ZERO && lower <= upper && upper.is_finite() && enough.is(lower, upper)) {
             return None;
         }
         let signed_distance = state.length * scale - radius;
@@ -219,7 +238,8 @@ mod tests {
         let mut state = Gjk::new(search.frame.offset);
         let (touching, options) = (search.frame.radius, GjkOptions::new(state.normal, 200));
         let end = search.run(&mut state, touching, options, &mut Observer::none());
-        let known = search.apart(&state).filter(|_| end == Some(End::Separated))?;
+        let any = Enough { width: f64::INFINITY, tolerance: 0.0, limit: f64::INFINITY };
+        let known = search.apart(&state, end?, any)?;
         let wanted = Wanted::new(OfOverlap::Known, SignedDistanceOptions::default(), None);
         let mut cores = Cores::new(FirstSearch::new(&shapes, cores.each_ref()));
         let found = separation::<_, false>(&mut cores, &wanted, Begun::Nothing, &mut Observer::none());

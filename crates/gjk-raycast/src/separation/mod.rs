@@ -21,7 +21,7 @@ use crate::body::{Pair, PointPair, Shapes};
 use crate::gjk::{End, Gjk};
 use crate::observer::Observer;
 use crate::{Status, SubAlgorithm};
-pub(crate) use apart::{FirstSearch, direct, slack};
+pub(crate) use apart::{Enough, FirstSearch, direct, slack};
 pub(crate) use cores::Cores;
 pub use distances::{Distance, SignedDistance, SignedDistanceOptions};
 pub(crate) use near::{FromContact, NearContact, ProjectedFace, Uncertainty, across_corners};
@@ -303,14 +303,14 @@ impl<V: Vector> Separation<V> {
             false => (zero, V::Scalar::infinity()),
         };
         let (allowed, three) = (cores.frame.widest(), V::Scalar::from_f64(3.0));
-        let is_narrow = upper - lower <= allowed + wanted.tolerance.max(zero) * lower || lower > wanted.options.limit;
+        let enough = Enough { width: allowed, tolerance: wanted.tolerance, limit: wanted.options.limit };
         let value = self.value(cores);
         // Bodies touch if their points are as near as their error, and a second measurement that was not cut short has
         // not found a plane between them.
         let is_cut_short = self.status == Status::IterationLimit || cores.iterations >= wanted.options.max_iterations;
         let is_decided =
             lower > zero || upper <= zero || cores.near.is_some() && !is_cut_short && value * three <= allowed;
-        let status = match is_bounded && is_narrow && is_decided {
+        let status = match is_bounded && enough.is(lower, upper) && is_decided {
             true => Status::Converged,
             false if is_cut_short => Status::IterationLimit,
             false => Status::Stalled,
