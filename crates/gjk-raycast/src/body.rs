@@ -179,7 +179,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
 
     #[inline(always)]
     fn cores(&self) -> [Core<A::Vector>; 2] {
-        let mut cores = [self.a.core(), self.b.core()];
+        let mut cores = [self.a.0.core(), self.b.0.core()];
         if self.is_swapped {
             cores.reverse();
         }

@@ -67,6 +67,13 @@ pub(crate) fn rounding<S: Scalar>(size: S) -> S {
     S::from_f64(8.0) * S::EPSILON * size
 }
 
+/// The rounding of a signed distance in the world's unit: unit vectors are so to 2ε, and the sum of the radii and the
+/// two sums that the radii and the length go into round to half of that.
+#[inline(always)]
+pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
+    S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
+}
+
 /// Where GJK begins and when it may end; lengths in units of the frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GjkOptions<V: Vector> {

@@ -262,16 +262,22 @@ impl<S: SupportMap> Linkage<S> {
         let center = motion.at(Scalar::ZERO).1.of(self.skeleton.links[link].each[body].center);
         let axis = at.map(|at| center - at);
         let mut cast_to = |end| {
-            let mut steps = ProvedSteps::NONE;
-            let mut show = |[start, end]: [ScalarOf<S>; 2], normals| {
-                if let Some(observer) = observer {
+            let mut proof = observer.as_mut().map(|observer| {
+                let show = |[start, end]: [ScalarOf<S>; 2], normals| {
                     let (from, to) = (from + start, from + end);
                     observer(FreeInterval { edge, from, to, link, body, met, normals });
-                }
-            };
+                };
+                (ProvedSteps::NONE, show)
+            });
             let options = MotionCastOptions { axis, max_time: end, ..options };
-            let answer = against.motion_cast(shape, motion, options, |there| steps.see(&there, &mut show))?;
-            steps.end(&answer, show);
+            let answer = against.motion_cast(shape, motion, options, |there| {
+                if let Some((steps, show)) = &mut proof {
+                    steps.see(&there, show);
+                }
+            })?;
+            if let Some((steps, show)) = proof {
+                steps.end(&answer, show);
+            }
             Ok::<_, RayCastError>(answer)
         };
         // The end of a part is not the end of the edge. If rounding decides whether a contact comes before it, the body

@@ -17,7 +17,8 @@ use super::placed::Placed;
 use crate::boxes::{EDGES, Zonotope, ZonotopeFacet};
 use crate::double::{Vec3, array, dot, vector};
 use crate::gjk::rounding;
-use crate::separation::{Uncertainty, slack};
+use crate::gjk::slack;
+use crate::separation::Uncertainty;
 use crate::unit::{is_moderate, reciprocal_of_power};
 
 /// A bound on the error of the unit vector along an edge, in ε: three for each of two rotations, and one for its

@@ -354,7 +354,7 @@ impl<'p, V: Vector> Search<'p, V> {
     /// time is remembered.
     pub(super) fn advance_to(&mut self, there: &Instant<V>) -> bool {
         let proof = acceleration_if_free(&*self.bodies, &self.near, there, &self.base);
-        let Some(acceleration) = proof.filter(|_| self.stay_in_contact(there)) else {
+        let Some(acceleration) = proof.filter(|_| !self.base.overlaps() || self.stay_in_contact(there)) else {
             self.ahead = Some(*there);
             return false;
         };
@@ -443,6 +443,32 @@ impl<'p, V: Vector> Search<'p, V> {
         self.looks += 1;
         self.show(&there);
         self.measured(there)
+    }
+
+    /// An instant with its distances measured from the level.
+    pub(super) fn measured(&self, there: Instant<V>) -> Instant<V> {
+        if self.base.stage == Stage::Apart { there } else { self.shifted(there, V::Scalar::ONE) }
+    }
+
+    /// The time up to which nothing that counts has happened. Bodies that are as deep as they began may have sunk by
+    /// less than the slack from the start on.
+    fn lower(&self) -> V::Scalar {
+        match self.base.stage {
+            Stage::Apart | Stage::Risen => self.near.time,
+            Stage::Touching | Stage::Deep => V::Scalar::ZERO,
+            Stage::Surfaced => self.base.since,
+        }
+    }
+
+    /// The time when the bodies touch, or get deeper than they began, once they are about to do so.
+    fn time_of_contact(&self) -> V::Scalar {
+        if matches!(self.base.stage, Stage::Touching | Stage::Deep) {
+            return self.time_of_sinking();
+        }
+        let Instant { time, gap, distance, closing, .. } = self.near;
+        let step = distance / closing;
+        // If they touch already, this is the time.
+        if step > V::Scalar::ZERO && gap > V::Scalar::ZERO { time + step } else { time }
     }
 
     pub(super) fn show(&mut self, there: &Instant<V>) {

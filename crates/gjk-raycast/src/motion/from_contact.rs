@@ -107,17 +107,12 @@ impl<V: Vector> Search<'_, V> {
         (self.near, self.beyond, self.farther) = (near, beyond, farther);
     }
 
-    /// An instant with its distances measured from the level.
-    pub(super) fn measured(&self, there: Instant<V>) -> Instant<V> {
-        if self.base.stage == Stage::Apart { there } else { self.shifted(there, V::Scalar::ONE) }
-    }
-
     /// An instant that is measured from the level, with its distances measured from contact.
     fn truly(&self, there: Instant<V>) -> Instant<V> {
         self.shifted(there, -V::Scalar::ONE)
     }
 
-    fn shifted(&self, there: Instant<V>, by: V::Scalar) -> Instant<V> {
+    pub(super) fn shifted(&self, there: Instant<V>, by: V::Scalar) -> Instant<V> {
         let Base { level, stage, width, .. } = self.base;
         let loose = self.base.loose();
         let rounded = if loose > V::Scalar::ZERO { self.bodies.level(there.time, there.normal).1 } else { loose };
@@ -130,9 +125,6 @@ impl<V: Vector> Search<'_, V> {
 
     /// Whether bodies that overlap certainly do so until a later time, so that they do not meet again before it.
     pub(super) fn stay_in_contact(&self, there: &Instant<V>) -> bool {
-        if !self.base.overlaps() {
-            return true;
-        }
         let upper = self.truly(self.near).upper.max(self.truly(*there).upper);
         upper < V::Scalar::ZERO && self.bodies.stay_in_contact(&self.near, there, -upper)
     }
@@ -162,33 +154,16 @@ impl<V: Vector> Search<'_, V> {
             && self.step() * V::Scalar::from_f64(left as f64) < rest
     }
 
-    /// The time up to which nothing that counts has happened. Bodies that are as deep as they began may have sunk by
-    /// less than the slack from the start on.
-    pub(super) fn lower(&self) -> V::Scalar {
-        match self.base.stage {
-            Stage::Apart | Stage::Risen => self.near.time,
-            Stage::Touching | Stage::Deep => V::Scalar::ZERO,
-            Stage::Surfaced => self.base.since,
+    /// The time when bodies that are about to get deeper than they began do so.
+    pub(super) fn time_of_sinking(&self) -> V::Scalar {
+        let Instant { time, error, closing, .. } = self.near;
+        // The depth that they have gained since the start.
+        let sunk = self.base.start - self.truly(self.near).distance + error * V::Scalar::from_f64(2.0);
+        let since = sunk / closing;
+        match time > since * V::Scalar::from_f64(POWER) {
+            _ if !(closing > V::Scalar::ZERO) => time,
+            true => time - since,
+            false => V::Scalar::ZERO,
         }
-    }
-
-    /// The time when the bodies touch, or get deeper than they began, once they are about to do so.
-    pub(super) fn time_of_contact(&self) -> V::Scalar {
-        let Instant { time, gap, distance, error, closing, .. } = self.near;
-        let zero = V::Scalar::ZERO;
-        if matches!(self.base.stage, Stage::Touching | Stage::Deep) {
-            // The depth that they have gained since the start.
-            let sunk = self.base.start - self.truly(self.near).distance + error * V::Scalar::from_f64(2.0);
-            let since = sunk / closing;
-            return match time > since * V::Scalar::from_f64(POWER) {
-                _ if !(closing > zero) => time,
-                true => time - since,
-                false => zero,
-            };
-        }
-        let step = distance / closing;
-        // If they touch already, this is the time.
-        let step = if step > zero && gap > zero { step } else { zero };
-        time + step
     }
 }

@@ -22,7 +22,7 @@ use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk, rounding};
 use crate::linear_cast::by_search;
 use crate::observer::Observer;
 use crate::options::{MayBeLean, Rare};
-use crate::separation::RareInDistances;
+use crate::separation::{MAX_DEPTH_ITERATIONS, RareInDistances};
 use crate::shape::Shape;
 use crate::signed_distance::rough_signed_distance;
 use crate::unit::{is_moderate, length_bound, lost_to_underflow, power_of_two_near, reciprocal_of_power};
@@ -195,7 +195,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
         let options = GjkOptions {
             limit: limits.distance * per_unit + radius,
             tolerance: limits.rough,
-            ..GjkOptions::new(state.normal, SignedDistanceOptions::<V>::new().max_iterations)
+            ..GjkOptions::new(state.normal, MAX_DEPTH_ITERATIONS)
         };
         let end = gjk(&mut state, pair, frame, options, None, &mut Observer::none());
         self.count(state.iterations);

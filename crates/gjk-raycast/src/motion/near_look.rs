@@ -19,8 +19,8 @@ use super::instant::{Instant, Limits, NEAR_IN_MOTION};
 use super::moving_pair::MovingPair;
 use super::placed::{CornerFace, Placed};
 use crate::body::{PointPair, TracedSupport as _};
-use crate::gjk::rounding;
-use crate::separation::{Uncertainty, room_within, slack};
+use crate::gjk::{rounding, slack};
+use crate::separation::{Uncertainty, room_within};
 use crate::simplex::{MAX_POINTS, project_rarely};
 use crate::unit::is_moderate;
 

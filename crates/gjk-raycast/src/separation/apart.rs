@@ -12,7 +12,7 @@ use num_traits::Float as _;
 use super::SignedDistance;
 use super::near::SUM;
 use crate::body::{AnyPair, Pair, PointPair, Shapes, TracedSupport as _};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, gjk, rounding};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, gjk, rounding, slack};
 use crate::observer::Observer;
 use crate::unit::lost_to_underflow;
 use crate::{Iterate, Status};
@@ -211,13 +211,6 @@ pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
     size: V::Scalar,
 ) -> V::Scalar {
     pair.error() + (size - pair.radius()) * (V::Scalar::EPSILON * Scalar::from_f64(SUM))
-}
-
-/// The rounding of a signed distance in the world's unit: unit vectors are so to 2ε, and the sum of the radii and the
-/// two sums that the radii and the length go into round to half of that.
-#[inline(always)]
-pub(crate) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
-    S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
 }
 
 #[cfg(test)]

@@ -105,7 +105,7 @@ impl<V: Vector> SignedDistance<V> {
 
 /// Support points after which a signed distance gives up. Polytopes need some dozens, smooth shapes about a hundred.
 /// The cap bounds the time for ties, such as an ellipsoid of revolution within another about the same axis.
-const MAX_DEPTH_ITERATIONS: usize = 500;
+pub(crate) const MAX_DEPTH_ITERATIONS: usize = 500;
 
 /// Options of [`signed_distance`](crate::signed_distance).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -18,11 +18,12 @@ use convex_support::{Core, Parallelotope, Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Pair, PointPair, Shapes};
-use crate::gjk::{End, Gjk};
+use crate::gjk::{End, Gjk, slack};
 use crate::observer::Observer;
 use crate::{Status, SubAlgorithm};
-pub(crate) use apart::{Enough, FirstSearch, direct, slack};
+pub(crate) use apart::{Enough, FirstSearch, direct};
 pub(crate) use cores::Cores;
+pub(crate) use distances::MAX_DEPTH_ITERATIONS;
 pub use distances::{Distance, SignedDistance, SignedDistanceOptions};
 pub(crate) use near::{FromContact, NearContact, ProjectedFace, Uncertainty, across_corners};
 pub(crate) use near::{in_double, look_after, near_contact_of, room_within};
