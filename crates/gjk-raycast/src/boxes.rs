@@ -23,8 +23,8 @@ use convex_support::{Parallelotope, Scalar, Vector};
 use num_traits::Float;
 
 use crate::body::PointPair;
-use crate::double::{LEAST, Vec3, array, cross, dot, vector};
 use crate::gjk::Frame;
+use convex_support::numerics::coordinates::{LEAST, Vec3, array, cross, dot, vector};
 
 /// The number of edges of two boxes that count, three of each.
 pub(crate) const EDGES: usize = 6;

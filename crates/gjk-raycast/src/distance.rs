@@ -4,12 +4,11 @@ use convex_support::numerics::bound::raised;
 use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once, compiled_table};
 use num_traits::Float as _;
 
-use crate::body::{Both, Shapes};
 use crate::gjk::{Gjk, GjkOptions, first_direction};
 use crate::observer::Observer;
 use crate::options::{MAX_ITERATIONS, MayBeLean, Rare, options};
+use crate::pair::{Both, Shape, Shapes};
 use crate::separation::{Begun, Cores, Enough, FirstSearch, OfOverlap, RareInDistances, Wanted, direct, separation};
-use crate::shape::Shape;
 use crate::{Distance, Iterate, SignedDistance, SignedDistanceOptions, SubAlgorithm};
 
 /// The distance of two shapes, and their closest points.

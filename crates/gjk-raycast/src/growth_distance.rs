@@ -14,14 +14,13 @@ use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, Hint, Point, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
-use crate::body::{Both, Pair, Shapes as _};
 use crate::cast::{CastRay, ObstacleCast, Part};
 use crate::distance::distance_of_any;
 use crate::linear_cast::{contact_slack, hit_on_the_way};
 use crate::motion::Moved;
 use crate::options::{MAX_ITERATIONS, options};
+use crate::pair::{Both, Pair, Shape, Shapes as _, WithoutLines};
 use crate::ray_exit::cast_back;
-use crate::shape::{Shape, WithoutLines};
 use crate::simplex::{MAX_POINTS, project};
 use crate::unit::{power_of_two_near, reciprocal_of_power};
 use crate::{DistanceOptions, Impact, IntersectOptions, Ray, RayCastOptions, Status, WarmStart, intersects};

@@ -3,13 +3,13 @@
 use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
-use crate::body::{Both, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::body::{PointPair, TracedSupport as _};
 use crate::boxes::{BoxesMeet, boxes};
 use crate::distance::distance;
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk, rounding};
 use crate::observer::Observer;
 use crate::options::{MAX_ITERATIONS, options};
-use crate::shape::Shape;
+use crate::pair::{Both, Pair, Shape, Shapes};
 use crate::unit::is_moderate;
 use crate::{DistanceOptions, Iterate, Status, SubAlgorithm};
 
@@ -197,7 +197,7 @@ compiled_once! {
         let meet = state.begin_at_closest(pair, &frame, size);
         // A search that begins elsewhere has another first direction.
         let known =
-            if meet.is_none() { first.point.map(|point| (point * frame.per_unit, PointPair::default())) } else { None };
+            if meet.is_none() { first.point.map(|point| (point * frame.per_unit, PointPair::ZERO)) } else { None };
         let max_iterations = options.max_iterations;
         let options = GjkOptions {
             limit: frame.radius,

@@ -147,7 +147,6 @@ extern crate std;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-mod axial;
 mod body;
 mod boxes;
 mod cast;
@@ -161,7 +160,6 @@ mod data;
 #[cfg(feature = "alloc")]
 mod derivative;
 mod distance;
-mod double;
 mod gjk;
 #[cfg(feature = "alloc")]
 mod growth_distance;
@@ -180,6 +178,7 @@ mod motion;
 mod observer;
 mod options;
 mod outcome;
+mod pair;
 mod pair_gradient;
 #[cfg(feature = "paper")]
 pub mod paper;
@@ -192,7 +191,6 @@ mod ray_exit;
 mod scene;
 mod segments;
 mod separation;
-mod shape;
 #[cfg(feature = "alloc")]
 mod signed_distance;
 mod simplex;

@@ -4,12 +4,12 @@ use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once, compiled_table};
 use num_traits::Float as _;
 
-use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
+use crate::body::{CastBody, PointPair};
 use crate::cast::{CastHit, CastRay, ObstacleCast, Part, RayBodies, cast, certain_closely, settle_ends};
 use crate::observer::Observer;
 use crate::options::{MAX_ITERATIONS, MayBeLean, Rare, options};
 use crate::outcome::{check_finite, check_limits};
-use crate::shape::Shape;
+use crate::pair::{Both, Pair, Shape, Shapes as _};
 use crate::start_in_contact::{Later, RareInLinearCasts, StartingPair};
 use crate::{
     Cast, CastMethod, Impact, Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RigidMotion,

@@ -10,7 +10,7 @@ use crate::cast::{
     show,
 };
 use crate::observer::Observer;
-use crate::shape::{Shape, WithoutLines};
+use crate::pair::{Shape, WithoutLines};
 use crate::unit::power_of_two_near;
 use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
 

@@ -3,13 +3,13 @@
 use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
-use crate::body::{Both, Shapes, TracedSupport as _};
+use crate::body::TracedSupport as _;
 use crate::gjk::{Gjk, GjkOptions, first_direction};
 use crate::observer::Observer;
+use crate::pair::{Both, Shape, Shapes};
 use crate::separation::{
     Begun, Cores, Enough, FirstSearch, OfOverlap, RareInDistances, Separation, Wanted, direct, separation,
 };
-use crate::shape::Shape;
 use crate::{Iterate, SignedDistance, SignedDistanceOptions, Status};
 
 /// The distance of two shapes, or minus their depth if they overlap, with the shortest way out.

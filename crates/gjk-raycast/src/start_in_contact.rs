@@ -11,7 +11,7 @@ use num_traits::Float as _;
 use crate::cast::RareInRayCasts;
 use crate::distance::distance_of_any;
 use crate::options::MayBeLean as _;
-use crate::shape::{Shape, WithoutLines};
+use crate::pair::{Shape, WithoutLines};
 use crate::signed_distance::signed_distance_of_any;
 use crate::{
     Cast, DistanceOptions, HalfSpace, Impact, Outcome, RayCastOptions, SignedDistance, SignedDistanceOptions, Status,

@@ -1,5 +1,6 @@
 //! Principal axes of a small symmetric positive definite matrix.
 
+use super::coordinates::dot;
 use super::double_double::DoubleDouble;
 use super::elementary::{hypot, sqrt};
 use super::range::power_of_two_below;
@@ -102,10 +103,6 @@ fn orthogonalise(g: &mut [[f64; 3]; 3], i: usize, j: usize) -> bool {
     g[i] = core::array::from_fn(|k| cosine * p[k] - sine * q[k]);
     g[j] = core::array::from_fn(|k| sine * p[k] + cosine * q[k]);
     true
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The determinant of the leading block of unit rows, by its sign.

@@ -741,7 +741,7 @@ mod tests {
                 bracket.advance(DVec3::NEG_X, CORNER).expect("a plane that is crossed");
                 let (mu, noise) = (bracket.low() + behind, bracket.noise);
                 let point = bracket.line().at(mu) + DVec3::Y * (aside * noise);
-                let found = bracket.close(0.0, point, PointPair::default(), mu).ok();
+                let found = bracket.close(0.0, point, PointPair::ZERO, mu).ok();
                 found.inspect(|contact| assert_eq!((contact.mu, contact.normal), (-1.0, Some(DVec3::NEG_X)))).is_some()
             })
         };

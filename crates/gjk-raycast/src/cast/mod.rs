@@ -22,7 +22,7 @@ use num_traits::Float as _;
 use crate::body::{CastBody, PointPair};
 use crate::observer::Observer;
 use crate::options::{MayBeLean, Rare};
-use crate::shape::Shape;
+use crate::pair::Shape;
 use crate::simplex::Simplex;
 use crate::{CastMethod, Miss, Outcome, RayCastOptions, Status};
 use algorithm_3::{algorithm_3, draw_near, touch_beside};

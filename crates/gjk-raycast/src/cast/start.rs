@@ -13,8 +13,8 @@ use num_traits::Float;
 use super::{CastHit, ObstacleCast, RayBodies};
 use crate::body::PointPair;
 use crate::gjk::Frame;
+use crate::pair::{Shape, WithoutLines};
 use crate::separation::{FromContact, NearContact, look_after, near_contact_of};
-use crate::shape::{Shape, WithoutLines};
 use crate::{Miss, Outcome, RayCastOptions, Status};
 
 /// Decides by the measured gap of the bodies where the cast begins.

@@ -10,7 +10,7 @@ use super::reduction::{Candidate, Rank, WORTHWHILE, reduced};
 use super::surface::{MAX_SUPPORT_POINTS, Side};
 use super::{Contact, ContactPoint, MANIFOLD_POINTS};
 use crate::SignedDistance;
-use crate::shape::Shape;
+use crate::pair::Shape;
 use crate::symmetric::{Across, axes_across, cross, dot, way};
 
 /// How near a point is to a corner of a shape's feature if it counts as the corner, as a part of the smaller shape's

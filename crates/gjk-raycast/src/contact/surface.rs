@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 
 use super::outline::{ContactPlane, Corner, Outline, Tangent, spanned, spread, wrap};
 use crate::curvature::share_of_second;
-use crate::shape::Shape;
+use crate::pair::Shape;
 use crate::symmetric::{Across, cross, dot, way};
 
 /// A measured length along a normal, or a speed along it, and a bound on its error.

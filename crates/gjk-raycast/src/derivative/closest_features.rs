@@ -5,7 +5,7 @@ use num_traits::Float as _;
 
 use super::overlap::{DifferenceSpan, Span};
 use crate::contact::Outline;
-use crate::shape::Shape;
+use crate::pair::Shape;
 use crate::symmetric::Symmetric;
 use crate::unit::power_of_two_near;
 

@@ -6,7 +6,7 @@ use num_traits::Float as _;
 use super::ClosestFeatures;
 use super::closest_features::{ClosestPoints, rounding};
 use crate::motion::Moved;
-use crate::shape::Shape;
+use crate::pair::Shape;
 use crate::{
     Distance, GrowthDistance, Impact, Ray, RayHit, RigidMotion, SignedDistance, SignedDistanceOptions, Trajectory,
     signed_distance,

@@ -1,12 +1,11 @@
 //! First derivatives: forces at points.
 
+use convex_support::numerics::angular;
 use convex_support::numerics::elementary::sin_cos;
 use convex_support::{AngularVelocity, Matrix, MotionGradient, Scalar, Vector};
 
 use super::ClosestFeatures;
-use crate::{
-    Displacement, GrowthDistance, Impact, PairGradient, Ray, RayHit, RigidMotion, SignedDistance, Trajectory, axial,
-};
+use crate::{Displacement, GrowthDistance, Impact, PairGradient, Ray, RayHit, RigidMotion, SignedDistance, Trajectory};
 
 impl<V: Vector> PairGradient<V> {
     /// The change per unit of time as both bodies begin to move.
@@ -322,10 +321,10 @@ fn pulled_back<V: Vector>(
     if V::DIM == 2 {
         return moment;
     }
-    let (theta, m) = (axial::vector::<V>(velocity.scaled(time)), axial::vector::<V>(moment));
-    let once = axial::turning(theta, m);
+    let (theta, m) = (angular::vector::<V>(velocity.scaled(time)), angular::vector::<V>(moment));
+    let once = angular::turning(theta, m);
     let [first, second] = jacobian_coefficients(theta.norm());
-    let pulled = m - once * first + axial::turning(theta, once) * second;
+    let pulled = m - once * first + angular::turning(theta, once) * second;
     V::AngularVelocity::from_coordinates(|i| pulled.get(i))
 }
 

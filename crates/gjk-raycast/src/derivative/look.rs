@@ -7,7 +7,7 @@ use num_traits::Float as _;
 use super::closest_features::{Bodies, ClosestFeatures, ClosestPoints, rounding};
 use super::overlap::{Span, are_apart};
 use crate::contact::{ContactPlane, Outline};
-use crate::shape::Shape;
+use crate::pair::Shape;
 use crate::symmetric::{Across, Symmetric, axes_across, dot, turned_left};
 use crate::unit::reciprocal_of_power;
 

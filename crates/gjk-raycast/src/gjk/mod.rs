@@ -1,14 +1,16 @@
 //! GJK: the closest points of two bodies' cores, for [`distance`](crate::distance) and
 //! [`intersects`](crate::intersects) (the paper's Algorithm 2).
 
+mod newton;
 mod next_direction;
 mod state;
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{CastBody as _, Pair, PointPair, ScalarFrom, Shapes, TracedSupport};
+use crate::body::{CastBody as _, PointPair, ScalarFrom, TracedSupport};
 use crate::observer::Observer;
+use crate::pair::{Pair, Shapes};
 use crate::unit::{is_moderate, lost_to_underflow, moderate, power_of_two_near, reciprocal_of_power};
 use crate::{Status, SubAlgorithm};
 use next_direction::NextDirection;

@@ -5,7 +5,8 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::{Direction, Frame, Progress};
-use crate::body::{AnyPair, PointPair};
+use crate::body::PointPair;
+use crate::pair::AnyPair;
 use crate::simplex::{Closest, Face, MAX_POINTS, Simplex, is_around_zero, nearest, nearest_face, project};
 use crate::{Iterate, SubAlgorithm};
 

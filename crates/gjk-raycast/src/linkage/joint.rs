@@ -1,12 +1,13 @@
 //! The parts of a linkage, and the motion at one time of a frame that some joints carry.
 
+use convex_support::numerics::angular;
 use convex_support::numerics::elementary::sin_cos;
 use convex_support::{Matrix as _, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::frame::{LinkFrame, epsilons};
 use super::joint_trajectory::JointState;
-use crate::{Pose, axial};
+use crate::Pose;
 
 /// A joint of a [`Linkage`](crate::Linkage): its frame in that of its parent, and its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,13 +84,13 @@ impl<V: Vector> JointStage<V> {
     pub(super) fn new(fixed: LinkFrame<V>, kind: JointKind<V>, column: usize) -> Option<Self> {
         match kind {
             JointKind::Fixed => None,
-            JointKind::Revolute(axis) => Some(Self::about(fixed, axial::vector::<V>(axis).unit()?, true, column)),
+            JointKind::Revolute(axis) => Some(Self::about(fixed, angular::vector::<V>(axis).unit()?, true, column)),
             JointKind::Prismatic(axis) => Some(Self::about(fixed, axis.unit()?, false, column)),
         }
     }
 
     fn about(fixed: LinkFrame<V>, axis: V, turns: bool, column: usize) -> Self {
-        let product = axial::matrix(axis);
+        let product = angular::matrix(axis);
         let sine = fixed.rotation * product;
         let turn = turns.then(|| [sine, sine * product]);
         Self { arm: fixed.translation.norm(), off_axis: V::Scalar::ZERO, fixed, axis, turn, column }
@@ -106,14 +107,14 @@ impl<V: Vector> JointStage<V> {
 
     /// Its axis and its origin in the world, if its moved frame is there.
     pub(super) fn placed(&self, frame: &LinkFrame<V>) -> [V; 2] {
-        let axis = if self.turns() { axial::turned(&frame.rotation, self.axis) } else { frame.rotation * self.axis };
+        let axis = if self.turns() { angular::turned(&frame.rotation, self.axis) } else { frame.rotation * self.axis };
         [axis, frame.translation]
     }
 
     /// How much the height of a point along `n` grows per unit of the joint value, given the axis and the origin in the
     /// world.
     pub(super) fn rise(&self, [axis, origin]: [V; 2], n: V, point: V) -> V::Scalar {
-        n.dot(if self.turns() { axial::turning(axis, point - origin) } else { axis })
+        n.dot(if self.turns() { angular::turning(axis, point - origin) } else { axis })
     }
 }
 
@@ -125,15 +126,15 @@ impl<V: Vector> MovingFrame<V> {
     /// The velocity of the point of the frame that is at `point`.
     #[inline]
     pub(super) fn velocity_at(&self, point: V) -> V {
-        self.velocity + axial::turning(self.spin, point - self.frame.translation)
+        self.velocity + angular::turning(self.spin, point - self.frame.translation)
     }
 
     /// The acceleration of that point.
     #[inline]
     pub(super) fn acceleration_at(&self, point: V) -> V {
         let arm = point - self.frame.translation;
-        let turning = axial::turning(self.spin, axial::turning(self.spin, arm));
-        self.acceleration + axial::turning(self.spin_rate, arm) + turning
+        let turning = angular::turning(self.spin, angular::turning(self.spin, arm));
+        self.acceleration + angular::turning(self.spin_rate, arm) + turning
     }
 
     /// The frame that a stage at this value leads to from this one.
@@ -153,13 +154,13 @@ impl<V: Vector> MovingFrame<V> {
             let rotation = self.frame.rotation * V::Matrix::from_cols_fn(turned);
             let moved = self.frame.moved(fixed.translation, arm, fixed.shift_error);
             let turn_error = moved.turn_error + fixed.turn_error + error + epsilons(OF_TURN);
-            let about = axial::turned(&rotation, axis);
+            let about = angular::turned(&rotation, axis);
             let spin = about * rate;
             return Self {
                 velocity: self.velocity_at(moved.translation),
                 acceleration: self.acceleration_at(moved.translation),
                 spin: self.spin + spin,
-                spin_rate: self.spin_rate + axial::product(self.spin, spin) + about * acceleration,
+                spin_rate: self.spin_rate + angular::product(self.spin, spin) + about * acceleration,
                 frame: LinkFrame { rotation, turn_error, ..moved },
             };
         }
@@ -170,7 +171,7 @@ impl<V: Vector> MovingFrame<V> {
         let turn_error = moved.turn_error + fixed.turn_error + epsilons(4.5);
         let direction = self.frame.rotation * along;
         let slide = direction * rate;
-        let coriolis = axial::turning(self.spin, slide);
+        let coriolis = angular::turning(self.spin, slide);
         Self {
             velocity: self.velocity_at(moved.translation) + slide,
             acceleration: self.acceleration_at(moved.translation) + coriolis + coriolis + direction * acceleration,

@@ -38,9 +38,9 @@ use super::joint_trajectory::{JointBounds, JointState};
 use super::link_motion::Route;
 use super::path_answer::{BodyPair, FreeBox, Met};
 use super::robot::{LinkView, Linkage};
-use crate::axial;
 use crate::outcome::check_limits;
 use crate::{Body, Scene, SignedDistanceOptions};
+use convex_support::numerics::angular;
 
 /// The number of joints whose signs are tried in all combinations. For each joint beyond these, the worst sign is taken
 /// by itself.
@@ -382,7 +382,7 @@ fn look<V: Vector, S: SupportMap<Vector = V>, O: SupportMap<Vector = V>>(
     for (stage, &[axis, origin]) in stages.iter().zip(&axes) {
         let half = half(stage.column);
         if stage.turns() {
-            let change = axial::turning(-axis, n) * half;
+            let change = angular::turning(-axis, n) * half;
             changes.push((change, change.dot(origin)));
             turned += half;
             size += origin.norm();

@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use convex_support::numerics::angular;
 use convex_support::numerics::bound::raised;
 use convex_support::{
     Aabb, BoundingSphere, Core, Matrix as _, Point, Posed, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere,
@@ -15,7 +16,7 @@ use super::joint::{Joint, JointKind, JointStage, Link, MovingFrame};
 use super::joint_trajectory::JointTrajectory as _;
 use super::link_motion::{PathEdge, Route};
 use super::path_answer::{Met, PathContact};
-use crate::{Impact, axial};
+use crate::Impact;
 
 /// A robot: links, each of some bodies, carried by joints in a tree.
 ///
@@ -259,7 +260,7 @@ impl<S: SupportMap> Linkage<S> {
         let ((moving, frame), bounds) = (route.place(edge, Scalar::ZERO), route.bounds(|column| edge.bounds(column)));
         let reach = route.distance(ball.center) + ball.radius;
         let at_first = if let Some(n) = along {
-            let turned = frame.rotation.transpose_mul(axial::turning(moving.spin, -n));
+            let turned = frame.rotation.transpose_mul(angular::turning(moving.spin, -n));
             let farthest = self.bodies(link).iter().map(|body| support_value(body, turned));
             n.dot(moving.velocity_at(frame.translation)) + farthest.fold(Float::neg_infinity(), Float::max)
         } else {

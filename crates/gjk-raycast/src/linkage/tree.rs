@@ -49,7 +49,7 @@ impl<S: SupportMap> Display for Linkage<S> {
                     JointKind::Fixed => f.write_str(", fixed\n")?,
                     JointKind::Revolute(axis) => {
                         f.write_str(", turns about ")?;
-                        let axis = crate::axial::vector::<S::Vector>(axis);
+                        let axis = convex_support::numerics::angular::vector::<S::Vector>(axis);
                         if S::Vector::DIM == 2 { write!(f, "{}", axis.get(0))? } else { vector(f, axis)? }
                     }
                     JointKind::Prismatic(axis) => {

@@ -32,10 +32,11 @@ use convex_support::{Hint, Scalar, Vector};
 
 use super::free_interval::square_of_roots;
 use super::instant::{Approach, Instant};
+use super::moving_body::{Course, MovingBody, Rigid, Turning};
 use super::moving_pair::MovingPair;
 use super::trajectory::{BentPlane, TurningPlane};
-use crate::body::{Aligned, Shapes as _};
 use crate::gjk::rounding;
+use crate::pair::{Aligned, Shapes as _};
 use crate::unit::is_moderate;
 
 /// A bound on the rounding of the leaning height, in ε times the sum of its magnitudes, and of the condition.
@@ -148,4 +149,41 @@ impl<V: Vector> MovingPair<'_, V> {
         let growth = a.jerk + b.jerk + three * q.norm() * (velocity.norm() + radius * fastest);
         Some([level - lost, growth])
     }
+}
+
+impl<V: Vector> MovingBody<'_, V> {
+    /// How the body's points bend away from a plane; `None` if the motion is not rigid.
+    ///
+    /// With `y` the vector to a point from the centre and `W` for `ω×`, the velocity is `v + Wy`, and the further
+    /// derivatives are `W²y` and `W³y`. Across the axis `y` is no longer than the reach.
+    fn bend(&self, plane: &BentPlane<V>) -> Option<Bend<V>> {
+        let rest = Bend { leaning: V::ZERO, velocity: V::ZERO, arm: V::ZERO, jerk: V::Scalar::ZERO };
+        let Rigid { motion, turning, .. } = match &self.course {
+            Course::Rest => return Some(rest),
+            Course::Rigid(rigid) => rigid,
+            Course::Other => return None,
+        };
+        let moving = Bend { velocity: motion.velocity, ..rest };
+        let Some(Turning { arm, reach, .. }) = turning else { return Some(moving) };
+        let (w, three) = (motion.rate(), V::Scalar::from_f64(3.0));
+        // A product that underflows is no bound.
+        if !is_moderate(w * w) {
+            return None;
+        }
+        let leaning = motion.turning(motion.turning(plane.normal) - plane.rate - plane.rate);
+        let slower = three * (plane.bend.norm() + plane.fastest * w) + plane.longest * (w * w);
+        Some(Bend { leaning, arm: arm.unwrap_or(V::ZERO), jerk: *reach * w * slower, ..moving })
+    }
+}
+
+/// A body's part of the second and third derivative of its points' heights over a bent plane.
+struct Bend<V: Vector> {
+    /// `ω × (ω × n − 2ṅ)`: its product with the vector to a point from the centre of the rotation is the part of
+    /// `2ṅ·ẋ + n·ẍ` that the rotation makes.
+    leaning: V,
+    velocity: V,
+    /// The vector from the centre of the rotation to the body's origin, at time 0.
+    arm: V,
+    /// A bound on the third derivative, for all points of the core, but for the part of the velocity.
+    jerk: V::Scalar,
 }

@@ -15,11 +15,11 @@ use super::instant::{Instant, Limits, NEAR_IN_MOTION};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::boxes::{EDGES, Zonotope, ZonotopeFacet};
-use crate::double::{Vec3, array, dot, vector};
 use crate::gjk::rounding;
 use crate::gjk::slack;
 use crate::separation::Uncertainty;
 use crate::unit::{is_moderate, reciprocal_of_power};
+use convex_support::numerics::coordinates::{Vec3, array, dot, vector};
 
 /// A bound on the error of the unit vector along an edge, in ε: three for each of two rotations, and one for its
 /// length.

@@ -1,10 +1,11 @@
 //! The motion of a body that several joints carry, such as a link of a robot, and bounds on the speed and unevenness
 //! of its points, for any joint values.
 
+use convex_support::numerics::angular;
 use convex_support::{BoundingSphere, Matrix, Scalar, Vector};
 
 use super::trajectory::{Displacement, RigidMotion, Trajectory, TurningPlane};
-use crate::{JointBounds, axial};
+use crate::JointBounds;
 
 /// The motion of a body at the end of a chain of joints, each of which moves at a constant rate: a link of a robot
 /// along a straight edge in joint space.
@@ -58,7 +59,7 @@ impl<'j, V: Vector> ChainMotion<'j, V> {
     fn bounds(&self, ball: BoundingSphere<V>, end: V::Scalar) -> Bounds<V::Scalar> {
         let (mut bounds, mut near) = (Bounds::REST, ball.center);
         for joint in self.joints.iter().rev() {
-            let (v, w) = (joint.velocity.norm(), axial::vector::<V>(joint.angular_velocity).norm());
+            let (v, w) = (joint.velocity.norm(), angular::vector::<V>(joint.angular_velocity).norm());
             // For a joint that does not turn the centre means nothing.
             if w > V::Scalar::ZERO {
                 bounds.lengthen((near - joint.center).norm());

@@ -9,8 +9,8 @@ use super::least::{LeastEnd, LeastSearch};
 use super::motion_cast::{check, checked};
 use super::moving_pair::MovingPair;
 use super::trajectory::Trajectory;
-use crate::body::{Both, Shapes};
 use crate::options::{Rare, options};
+use crate::pair::{Both, Shapes};
 use crate::{Cast, Distance, Impact, MotionCastOptions, MotionIterate, Outcome, RayCastError, Status};
 
 /// Times to examine, after which to give up. A minimum takes about fifteen, and each other minimum that is about as low

@@ -3,9 +3,9 @@
 use super::first_contact::Search;
 use super::moving_pair::MovingPair;
 use super::trajectory::{RigidMotion, Trajectory};
-use crate::body::{Both, Shapes};
 use crate::linear_cast::as_body;
 use crate::outcome::{check_finite, check_limits, check_numbers};
+use crate::pair::{Both, Shapes};
 use crate::{Motion, MotionCast, MotionCastOptions, MotionIterate, RayCastError};
 use convex_support::{AngularVelocity, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;

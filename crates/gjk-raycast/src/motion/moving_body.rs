@@ -5,10 +5,10 @@ use num_traits::Float;
 
 use super::placed::Moved;
 use super::rigid_motion::{SpinOf, turn_error};
-use super::trajectory::{BentPlane, MovingBall, RigidMotion, Trajectory, TurningPlane};
-use crate::double::{LEAST, Vec3, array, cross, dot, vector};
-use crate::shape::Shape;
-use crate::unit::{is_moderate, length_bound};
+use super::trajectory::{MovingBall, RigidMotion, Trajectory, TurningPlane};
+use crate::pair::Shape;
+use crate::unit::length_bound;
+use convex_support::numerics::coordinates::{LEAST, Vec3, array, cross, dot, vector};
 
 /// If the cosine of the angle between two edges is more than this, a parallelotope does not count as a box.
 const NOT_A_BOX: f64 = 1e-6;
@@ -20,13 +20,13 @@ const THICKNESS: f64 = 1.0 / (1_u64 << 60) as f64;
 pub(super) struct MovingBody<'s, V: Vector> {
     pub(super) shape: Shape<'s, V>,
     motion: &'s dyn Trajectory<Vector = V>,
-    course: Course<V>,
+    pub(super) course: Course<V>,
     /// The core of the shape at time 0. Its radius is increased by the target distance.
     pub(super) core: Core<V>,
 }
 
 /// The parts of a motion that do not depend on time.
-enum Course<V: Vector> {
+pub(super) enum Course<V: Vector> {
     /// The body stays where it is. Of two bodies one mostly does.
     Rest,
     Rigid(Rigid<V>),
@@ -34,34 +34,22 @@ enum Course<V: Vector> {
 }
 
 /// A rigid motion of a body.
-struct Rigid<V: Vector> {
-    motion: RigidMotion<V>,
+pub(super) struct Rigid<V: Vector> {
+    pub(super) motion: RigidMotion<V>,
     /// A bound on the rounding error of the shift per unit of time.
     shift_error: V::Scalar,
-    turning: Option<Turning<V>>,
+    pub(super) turning: Option<Turning<V>>,
 }
 
 /// How a body turns.
-struct Turning<V: Vector> {
+pub(super) struct Turning<V: Vector> {
     spin: SpinOf<V>,
     /// The vector from the centre to the body's origin, unless it is there.
-    arm: Option<V>,
+    pub(super) arm: Option<V>,
     /// A bound on the distance of the core's points from the centre.
     lever: V::Scalar,
     /// The greatest distance of the core's points from the axis.
-    reach: V::Scalar,
-}
-
-/// A body's part of the second and third derivative of its points' heights over a [bent plane](super::bent_plane).
-pub(super) struct Bend<V: Vector> {
-    /// `ω × (ω × n − 2ṅ)`: its product with the vector to a point from the centre of the rotation is the part of
-    /// `2ṅ·ẋ + n·ẍ` that the rotation makes.
-    pub(super) leaning: V,
-    pub(super) velocity: V,
-    /// The vector from the centre of the rotation to the body's origin, at time 0.
-    pub(super) arm: V,
-    /// A bound on the third derivative, for all points of the core, but for the part of the velocity.
-    pub(super) jerk: V::Scalar,
+    pub(super) reach: V::Scalar,
 }
 
 /// Where a body is at a time. The body is turned about its own origin, which is moved.
@@ -132,29 +120,6 @@ impl<'s, V: Vector> MovingBody<'s, V> {
             }
             Course::Other => self.motion.acceleration_along(self.ball(), plane, interval),
         }
-    }
-
-    /// How the body's points bend away from a plane; `None` if the motion is not rigid.
-    ///
-    /// With `y` the vector to a point from the centre and `W` for `ω×`, the velocity is `v + Wy`, and the further
-    /// derivatives are `W²y` and `W³y`. Across the axis `y` is no longer than the reach.
-    pub(super) fn bend(&self, plane: &BentPlane<V>) -> Option<Bend<V>> {
-        let rest = Bend { leaning: V::ZERO, velocity: V::ZERO, arm: V::ZERO, jerk: V::Scalar::ZERO };
-        let Rigid { motion, turning, .. } = match &self.course {
-            Course::Rest => return Some(rest),
-            Course::Rigid(rigid) => rigid,
-            Course::Other => return None,
-        };
-        let moving = Bend { velocity: motion.velocity, ..rest };
-        let Some(Turning { arm, reach, .. }) = turning else { return Some(moving) };
-        let (w, three) = (motion.rate(), V::Scalar::from_f64(3.0));
-        // A product that underflows is no bound.
-        if !is_moderate(w * w) {
-            return None;
-        }
-        let leaning = motion.turning(motion.turning(plane.normal) - plane.rate - plane.rate);
-        let slower = three * (plane.bend.norm() + plane.fastest * w) + plane.longest * (w * w);
-        Some(Bend { leaning, arm: arm.unwrap_or(V::ZERO), jerk: *reach * w * slower, ..moving })
     }
 
     /// The body's part of `E(m)`, the bound of [`in_contact`](super::in_contact) along a unit vector in an interval:

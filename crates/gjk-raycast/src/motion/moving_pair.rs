@@ -16,14 +16,14 @@ use super::instant::{Approach, Instant, Limits, NEAR_IN_MOTION};
 use super::moving_body::MovingBody;
 use super::placed::{BodyFrameCorners, Placed};
 use super::trajectory::{BentPlane, Trajectory, TurningPlane};
-use crate::body::{CastBody, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::body::{CastBody, PointPair, TracedSupport as _};
 use crate::distance::distance_of_any;
 use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk, rounding};
 use crate::linear_cast::by_search;
 use crate::observer::Observer;
 use crate::options::{MayBeLean, Rare};
+use crate::pair::{Pair, Shape, Shapes};
 use crate::separation::{MAX_DEPTH_ITERATIONS, RareInDistances};
-use crate::shape::Shape;
 use crate::signed_distance::rough_signed_distance;
 use crate::unit::{is_moderate, length_bound, lost_to_underflow, power_of_two_near, reciprocal_of_power};
 use crate::{

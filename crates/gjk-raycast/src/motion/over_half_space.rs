@@ -12,7 +12,7 @@ use super::moving_body::MovingBody;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::contact::Level;
 use crate::half_space::{Lowest, Plane};
-use crate::shape::{Shape, WithoutLines};
+use crate::pair::{Shape, WithoutLines};
 use crate::unit::{length_bound, lost_to_underflow};
 use crate::{
     Distance, HalfSpace, Motion, MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate,

@@ -4,9 +4,9 @@ use core::cell::Cell;
 
 use convex_support::{Core, CoreKind, Feature, Hint, Matrix, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
-use crate::body::{Aligned, Of, Pair, PointPair, Shapes};
+use crate::body::PointPair;
+use crate::pair::{Aligned, Of, Pair, Shape, Shapes};
 use crate::separation::{Uncertainty, across_corners};
-use crate::shape::Shape;
 use crate::simplex::{MAX_POINTS, project};
 
 /// A shape turned by a rotation, with its origin put at a given point, and with a radius that may be larger than its
@@ -194,7 +194,7 @@ pub(super) struct CornerFace<V: Vector> {
 impl<V: Vector> BodyFrameCorners<V> {
     /// No corners.
     pub(super) fn none() -> Self {
-        Self { pairs: [PointPair::default(); MAX_POINTS], len: 0 }
+        Self { pairs: [PointPair::ZERO; MAX_POINTS], len: 0 }
     }
 
     /// Replaces the corners by the given ones, which are those of the bodies at one time.
@@ -210,7 +210,7 @@ impl<V: Vector> BodyFrameCorners<V> {
     #[inline(always)]
     pub(super) fn at(&self, Placed { a, b, offset, .. }: &Placed<'_, V>) -> CornerFace<V> {
         let len = self.len.min(MAX_POINTS);
-        let (mut pairs, mut points) = ([PointPair::default(); MAX_POINTS], [V::ZERO; MAX_POINTS]);
+        let (mut pairs, mut points) = ([PointPair::ZERO; MAX_POINTS], [V::ZERO; MAX_POINTS]);
         for (i, kept) in self.pairs[..len].iter().enumerate() {
             pairs[i] = PointPair { a: a.turned(kept.a), b: b.turned(kept.b) };
             points[i] = pairs[i].a - pairs[i].b + *offset;
@@ -247,7 +247,7 @@ impl<V: Vector> CornerFace<V> {
     /// The points of both cores whose difference is its closest point.
     #[inline(always)]
     pub(super) fn closest_points(&self) -> PointPair<V> {
-        self.corners().zip(&self.weights).fold(PointPair::default(), |sum, ((_, pair), &weight)| sum.plus(pair, weight))
+        self.corners().zip(&self.weights).fold(PointPair::ZERO, |sum, ((_, pair), &weight)| sum.plus(pair, weight))
     }
 
     /// The corners of the difference, and the corners of both cores that each is made of.

@@ -6,7 +6,7 @@ use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::trajectory::{Displacement, MovingBall, RigidMotion, Trajectory, TurningPlane};
-use crate::axial;
+use convex_support::numerics::angular;
 
 /// The spin of the angular velocities of a space.
 pub(super) type SpinOf<V> = <<V as Vector>::AngularVelocity as AngularVelocity<V>>::Spin;
@@ -67,7 +67,7 @@ impl<V: Vector> RigidMotion<V> {
         let straight = Self::between(from, to, duration);
         let turn = V::AngularVelocity::between(from.rotation, to.rotation);
         let w = turn.cross_matrix();
-        let (angle, moved) = (axial::vector::<V>(turn).norm(), to.translation - from.translation);
+        let (angle, moved) = (angular::vector::<V>(turn).norm(), to.translation - from.translation);
         if angle == V::Scalar::ZERO {
             return straight;
         }
@@ -124,20 +124,20 @@ impl<V: Vector> RigidMotion<V> {
         if self.angular_velocity == Default::default() {
             return (V::Scalar::ZERO, ball.radius);
         }
-        let (rate, arm) = (axial::vector::<V>(self.angular_velocity).norm(), ball.center - self.center);
+        let (rate, arm) = (angular::vector::<V>(self.angular_velocity).norm(), ball.center - self.center);
         let off = if arm == V::ZERO { V::Scalar::ZERO } else { self.turning(arm).norm() / rate };
         (rate, off + ball.radius)
     }
 
     /// `|ω|`.
     pub(super) fn rate(&self) -> V::Scalar {
-        axial::vector::<V>(self.angular_velocity).norm()
+        angular::vector::<V>(self.angular_velocity).norm()
     }
 
     /// `ω × v`.
     #[inline(always)]
     pub(super) fn turning(&self, v: V) -> V {
-        axial::turning(axial::vector(self.angular_velocity), v)
+        angular::turning(angular::vector(self.angular_velocity), v)
     }
 }
 

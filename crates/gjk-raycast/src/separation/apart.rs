@@ -11,9 +11,10 @@ use num_traits::Float as _;
 
 use super::SignedDistance;
 use super::near::SUM;
-use crate::body::{AnyPair, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::body::{PointPair, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, gjk, rounding, slack};
 use crate::observer::Observer;
+use crate::pair::{AnyPair, Pair, Shapes};
 use crate::unit::lost_to_underflow;
 use crate::{Iterate, Status};
 
@@ -154,7 +155,7 @@ impl<'a, V: Vector> FirstSearch<'a, V> {
             return None;
         }
         let (normal, axis) = (state.normal.unit()?, state.axis.unit()?);
-        let (mut point, mut points, mut sum) = (V::ZERO, PointPair::default(), V::Scalar::ZERO);
+        let (mut point, mut points, mut sum) = (V::ZERO, PointPair::ZERO, V::Scalar::ZERO);
         for (corner, weight, witness) in state.simplex.corners() {
             (point, points, sum) = (point + corner * weight, points.plus(witness, weight), sum + weight);
         }
@@ -220,7 +221,7 @@ mod tests {
 
     use super::*;
     use crate::SignedDistanceOptions;
-    use crate::body::Both;
+    use crate::pair::Both;
     use crate::separation::{Begun, Cores, OfOverlap, Wanted, separation};
 
     /// The answer of the first means, and whether that of all means is the same to the last bit.

@@ -7,9 +7,10 @@ use num_traits::Float as _;
 use super::Wanted;
 use super::apart::{FirstSearch, measured};
 use super::near::{NearContact, Uncertainty};
-use crate::body::{AnyPair, Pair, PointPair, TracedSupport as _};
+use crate::body::{PointPair, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, first_direction};
 use crate::observer::Observer;
+use crate::pair::{AnyPair, Pair};
 
 /// A support point of the difference, and its points of both cores.
 #[derive(Clone, Copy, Debug)]

@@ -17,9 +17,10 @@ use convex_support::numerics::bound::least;
 use convex_support::{Core, Parallelotope, Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Pair, PointPair, Shapes};
+use crate::body::PointPair;
 use crate::gjk::{End, Gjk, slack};
 use crate::observer::Observer;
+use crate::pair::{Pair, Shapes};
 use crate::{Status, SubAlgorithm};
 pub(crate) use apart::{Enough, FirstSearch, direct};
 pub(crate) use cores::Cores;

@@ -13,7 +13,7 @@ use convex_support::{Scalar, Vector};
 use crate::body::PointPair;
 pub(crate) use affine_hull::{AffineHull, project, project_rarely};
 pub(crate) use closest::{Closest, nearest_face};
-pub(crate) use regions::{cross, is_around_zero, nearest};
+pub(crate) use regions::{is_around_zero, nearest};
 pub use sub_algorithm::SubAlgorithm;
 
 /// The largest number of points of a simplex, in 3D.
@@ -35,7 +35,7 @@ impl<V: Vector> Simplex<V> {
         Self {
             points: [V::ZERO; MAX_POINTS],
             along: [V::ZERO; MAX_POINTS],
-            witnesses: [PointPair::default(); MAX_POINTS],
+            witnesses: [PointPair::ZERO; MAX_POINTS],
             weights: [V::Scalar::ZERO; MAX_POINTS],
             len: 0,
         }
@@ -120,7 +120,7 @@ impl<V: Vector> Simplex<V> {
 
     #[inline(never)]
     pub(crate) fn weighted_witness(&self) -> PointPair<V> {
-        self.weighted().fold(PointPair::default(), |sum, (weight, witness)| sum.plus(witness, weight))
+        self.weighted().fold(PointPair::ZERO, |sum, (weight, witness)| sum.plus(witness, weight))
     }
 
     pub(crate) fn middle(&self) -> V {

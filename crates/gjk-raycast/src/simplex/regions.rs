@@ -1,5 +1,6 @@
 //! The point of a simplex closest to zero, searched from its newest vertex.
 
+use convex_support::numerics::angular::cross;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -161,16 +162,6 @@ fn flatness<V: Vector>() -> V::Scalar {
 #[inline(always)]
 fn towards<V: Vector>(normal: V, y: V) -> V {
     if normal.dot(y) < V::Scalar::ZERO { -normal } else { normal }
-}
-
-/// The cross product, in space.
-#[inline(always)]
-pub(crate) fn cross<V: Vector>(a: V, b: V) -> V {
-    debug_assert!(V::DIM == 3, "the cross product needs three dimensions");
-    V::from_fn(|i| {
-        let (j, k) = ((i + 1) % V::DIM, (i + 2) % V::DIM);
-        a.get(j) * b.get(k) - a.get(k) * b.get(j)
-    })
 }
 
 /// Whether zero is in the simplex of some points, even if each is wrong by an error, which is at least `8ε` of the

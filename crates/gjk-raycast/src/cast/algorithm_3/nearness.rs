@@ -41,7 +41,7 @@ pub(in crate::cast) fn draw_near<V: Vector>(
     bracket.keep_depth();
     let is_near = |bracket: &mut Bracket<'_, V>, end: usize| {
         let (mut simplex, mut tilted) = (Simplex::new(), contact.normal);
-        simplex.push(core_point, V::ZERO, PointPair::default());
+        simplex.push(core_point, V::ZERO, PointPair::ZERO);
         for _ in 0..LOOKS_BESIDE_END {
             let x = bracket.line().at(bracket.ends()[end]);
             let Ok(Closest { v, face, weights }) = closest(bracket, &simplex, |p| x - p, V::DIM) else { break };

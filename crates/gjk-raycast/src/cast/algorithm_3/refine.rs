@@ -174,7 +174,7 @@ impl<V: Vector> Recent<V> {
         if let Some(out) = known.or((self.0.points().len() == 3).then_some(0)) {
             self.0.remove(out);
         }
-        self.0.push(point, along, PointPair::default());
+        self.0.push(point, along, PointPair::ZERO);
     }
 }
 

@@ -93,14 +93,13 @@ impl<V: Vector> BestPlane<V> {
         if weights.iter().any(|&weight| weight < -bracket.noise) {
             return Err(Stop::InDoubt);
         }
-        let (mut point, mut witness) = (V::ZERO, PointPair::default());
+        let [mut point, mut a, mut b] = [V::ZERO; 3];
         for (p, &weight) in corners.iter().zip(weights) {
-            point += p.point * weight;
-            witness = witness.plus(p.witness, weight);
+            (point, a, b) = (point + p.point * weight, a + p.witness.a * weight, b + p.witness.b * weight);
         }
         let n = frame.normal(self.alpha.plane()).unit().ok_or(Stop::InDoubt)?;
         bracket.advance(n, self.point)?;
-        bracket.close(bracket.radius, point, witness, high)
+        bracket.close(bracket.radius, point, PointPair { a, b }, high)
     }
 }
 

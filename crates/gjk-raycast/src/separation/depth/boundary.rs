@@ -10,10 +10,10 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
-use crate::double::{LEAST, Vec3, cross, dot};
 use crate::separation::cores::Vertex;
 use crate::separation::near::faces::turned_right;
 use crate::simplex::{MAX_POINTS, nearest_face};
+use convex_support::numerics::coordinates::{LEAST, Vec3, cross, dot};
 
 /// Corners of a facet, of which a polygon's has two and a polyhedron's three.
 const FACET_CORNERS: usize = MAX_POINTS - 1;
@@ -587,7 +587,7 @@ mod tests {
     use crate::body::PointPair;
 
     fn vertex(point: DVec3) -> Vertex<DVec3> {
-        Vertex { point, along: point, pair: PointPair::default() }
+        Vertex { point, along: point, pair: PointPair::ZERO }
     }
 
     fn tetrahedron() -> Boundary<DVec3> {
@@ -692,7 +692,7 @@ mod tests {
     /// Five corners and their quarter turns, all on the hull.
     #[test]
     fn a_polygon_has_an_edge_for_each_corner() {
-        let vertex = |point: DVec2| Vertex { point, along: point, pair: PointPair::default() };
+        let vertex = |point: DVec2| Vertex { point, along: point, pair: PointPair::ZERO };
         let corners = [(0.0, 8.0), (1.0, 8.0), (4.0, 7.0), (7.0, 4.0), (8.0, 1.0)];
         let all = (0..4).flat_map(|quarter| {
             let turn = move |(x, y): (f64, f64)| [(x, y), (y, -x), (-x, -y), (-y, x)][quarter];

@@ -8,6 +8,7 @@ use super::boundary::Boundary;
 use super::newton;
 use super::witness::{self, Ends};
 use crate::SignedDistanceOptions;
+use crate::body::PointPair;
 use crate::gjk::Gjk;
 use crate::observer::Observer;
 use crate::separation::MetPoint;
@@ -382,7 +383,7 @@ struct AffineSpan<V: Vector> {
 
 impl<V: Vector> AffineSpan<V> {
     fn new() -> Self {
-        let none = Vertex { point: V::ZERO, along: V::ZERO, pair: Default::default() };
+        let none = Vertex { point: V::ZERO, along: V::ZERO, pair: PointPair::ZERO };
         Self { points: [none; MAX_POINTS], len: 0 }
     }
 

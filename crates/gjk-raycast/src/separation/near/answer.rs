@@ -4,8 +4,9 @@ use convex_support::Vector;
 
 use super::{NearContact, near_contact};
 use crate::Status;
-use crate::body::{Pair, PointPair};
+use crate::body::PointPair;
 use crate::gjk::{Frame, Gjk};
+use crate::pair::Pair;
 use crate::separation::cores::Cores;
 use crate::separation::{OfOverlap, Separation, Wanted};
 

@@ -4,18 +4,18 @@
 //! beside zero from the next ones. From a few errors aside of zero it can. So the difference is looked at from there,
 //! along the normal of the best plane and across it, both ways: from a place outside, GJK finds the face nearest to
 //! that place, and the plane of this face may keep zero out. If no such plane does, the points found are the corners of
-//! an octahedron within the difference, in the plane of a square. Where zero has [room](super::room) in it, the bodies
-//! certainly meet. The points and planes are evaluated without rounding, like all near contact.
+//! an [octahedron](super::octahedron) within the difference. Where zero has room in it, the bodies certainly meet. The
+//! points and planes are evaluated without rounding, like all near contact.
 
 use convex_support::numerics::bound::raised;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::faces::{about_edge, across_faces};
-use super::room::{faces_of_octahedron, room_around_zero};
+use super::octahedron::Octahedron;
 use super::{Known, NearContact, SupportPlane, run};
-use crate::body::AnyPair;
 use crate::gjk::{End, Frame, Gjk};
+use crate::pair::AnyPair;
 use crate::symmetric::axes_across;
 
 /// How far aside the places are, in errors of the query. An octahedron of which all corners are inside leaves zero 9
@@ -50,30 +50,29 @@ impl<V: Vector> Known<V> {
         // A search that stalled is at a distance from zero.
         let aside = frame.error * V::Scalar::from_f64(OCTAHEDRON) + (near.length - frame.radius).abs();
         let [u, w] = axes_across(near.normal);
-        let (mut corners, mut is_found) = ([[V::ZERO; 2]; 3], true);
-        for (ends, axis) in corners.iter_mut().zip([near.normal, u, w]).take(V::DIM) {
-            for (corner, axis) in ends.iter_mut().zip([-axis, axis]) {
-                let (place, left) = (axis * aside, max_iterations.saturating_sub(near.iterations));
-                let seen = self.seen_from(pair, place, state, left.min(MOST));
-                near.iterations += seen.iterations;
-                is_found &= !seen.simplex.points().is_empty();
-                let point = self.nearest_point(&seen);
-                let (outwards, length) = (place - point, (place - point).norm());
-                let is_outside = length > frame.noise;
-                if is_outside && let Some(plane) = self.higher_plane(pair, &near, &seen) {
-                    return near.with_plane(&plane);
-                }
-                // NaN is no corner.
-                *corner = if length <= frame.radius { place } else { point + outwards * (frame.radius / length) };
+        let octahedron = Octahedron::around_zero([-near.normal, -u, -w], aside, frame.radius, |place| {
+            let left = max_iterations.saturating_sub(near.iterations);
+            let seen = self.seen_from(pair, place, state, left.min(MOST));
+            near.iterations += seen.iterations;
+            let point = self.nearest_point(&seen);
+            let is_outside = (place - point).norm() > frame.noise;
+            match if is_outside { self.higher_plane(pair, &near, &seen) } else { None } {
+                Some(plane) => Err(plane),
+                None => Ok((!seen.simplex.points().is_empty()).then_some(point)),
             }
-        }
-        if is_found && !near.is_separated() {
+        });
+        let octahedron = match octahedron {
+            Ok(octahedron) => octahedron,
+            Err(plane) => return near.with_plane(&plane),
+        };
+        if let Some(octahedron) = octahedron
+            && !near.is_separated()
+        {
             // A corner is right to 16 roundings of its largest part, besides the errors of its points.
-            let all = corners.iter().flatten().fold(frame.radius, |most, corner| most.max(corner.abs().max_element()));
+            let all = octahedron.extent(frame.radius);
             let rounded = V::splat((all + frame.radius) * (V::Scalar::EPSILON * V::Scalar::from_f64(8.0)));
             let known = self.points.with(rounded);
-            let error = |u: V| raised(known.along(u));
-            let room = room_around_zero(faces_of_octahedron(&corners), error, |_| Scalar::ONE);
+            let room = octahedron.room(|u| raised(known.along(u)), |_| Scalar::ONE);
             if room > Scalar::ZERO {
                 (near.end, near.overlaps_certainly, near.upper) = (End::Overlap, true, near.upper.min(-room));
             }

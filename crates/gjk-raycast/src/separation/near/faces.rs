@@ -4,8 +4,9 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::body::PointPair;
-use crate::simplex::{MAX_POINTS, cross};
+use crate::simplex::MAX_POINTS;
 use crate::symmetric::{self, Across, axes_across, dot, way};
+use convex_support::numerics::angular::cross;
 
 /// As many corners as there are dimensions, projected along a unit vector: their coordinates across it, and their
 /// heights along it. The line through zero along that vector pierces their face where zero is within the projection.

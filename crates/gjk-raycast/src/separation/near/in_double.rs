@@ -10,10 +10,11 @@ use convex_support::numerics::bound::{least, raised};
 use convex_support::{Core, CoreKind, Hint, Scalar, compiled_once};
 
 use super::Uncertainty;
-use crate::body::{Aligned, Pair, PointPair, Shapes};
-use crate::double::{array, vector};
+use crate::body::PointPair;
+use crate::pair::{Aligned, Pair, Shapes};
 use crate::segments;
 use crate::{SignedDistance, Status};
+use convex_support::numerics::coordinates::{array, vector};
 
 /// The rounding in double precision, in ε of the size: some 20 operations, each of half of that.
 const ROUNDED_IN_DOUBLE: f64 = 32.0;

@@ -7,10 +7,12 @@
 //! The search begins at the offset of the origins, whatever axis the query began at, and the [larger body comes
 //! first](super::order). So all queries about one pair decide alike.
 
+mod after_contact;
 mod answer;
 mod aside;
 pub(super) mod faces;
 mod in_double;
+mod octahedron;
 mod room;
 pub(super) mod uncertainty;
 
@@ -19,15 +21,16 @@ use convex_support::numerics::twofold::{dot_minus, lost_in_sum};
 use convex_support::{Core, CoreKind, Scalar, Vector};
 use num_traits::Float;
 
-use crate::body::{AnyPair, Both, CastBody as _, Pair, PointPair, TracedSupport as _};
+use crate::body::{CastBody as _, PointPair, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
-use crate::shape::Shape;
+use crate::pair::{AnyPair, Both, Pair, Shape};
 use crate::simplex::is_around_zero;
+pub(crate) use after_contact::{FromContact, look_after};
 pub(crate) use faces::ProjectedFace;
 use faces::{about_edge, across_faces};
 pub(crate) use in_double::in_double;
-pub(crate) use room::{FromContact, across_corners, look_after, room_within};
+pub(crate) use room::{across_corners, room_within};
 pub(crate) use uncertainty::{SUM, Uncertainty};
 
 /// The result about bodies near contact; lengths in units of the frame, from body to body.

@@ -8,7 +8,7 @@
 use convex_support::{Rounding, Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::AnyPair;
+use crate::pair::AnyPair;
 
 /// The rounding of a point of the difference, in units of ε times the coordinates of the cores and of the offset of
 /// their origins.
