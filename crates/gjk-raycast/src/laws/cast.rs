@@ -8,7 +8,7 @@ use convex_support::{Scalar, Vector};
 
 use super::planes::{dot, length, minus, numbers};
 use super::{Law, Numbers, Report};
-use crate::{Cast, Outcome, Status};
+use crate::{Cast, Impact, Outcome, Status};
 
 /// How far apart or deep the bodies may be within a converged bracket, in units of ε times the size and the way, plus the
 /// errors.
@@ -67,6 +67,22 @@ impl Told {
         }
     }
 
+    /// The cast of two bodies that move, in either order, with a tolerance.
+    pub(super) fn of_motion<V: Vector>(
+        how: &'static str,
+        [end, tolerance]: [V::Scalar; 2],
+        cast: &Cast<Impact<V>, V>,
+        is_reversed: bool,
+    ) -> Self {
+        let normal = |hit: &Impact<V>| hit.normal.map(|n| if is_reversed { -n } else { n });
+        let mut one = Self::new(how, end, cast, |hit| (hit.time, normal(hit)));
+        one.tolerance = tolerance.as_f64();
+        if let (true, Said::Miss { axis }) = (is_reversed, &mut one.said) {
+            *axis = minus(*axis);
+        }
+        one
+    }
+
     pub(super) fn is_certain_hit(&self) -> bool {
         self.is_certain && matches!(self.said, Said::Hit { .. })
     }
@@ -78,13 +94,6 @@ impl Told {
     /// What was answered, for people.
     pub(super) fn answer(&self) -> &str {
         &self.answer
-    }
-
-    /// The miss of the bodies in the other order.
-    pub(super) fn reverse(&mut self) {
-        if let Said::Miss { axis } = &mut self.said {
-            *axis = minus(*axis);
-        }
     }
 
     /// The bounds on the time, as told.

@@ -10,7 +10,7 @@ use super::planes::{dot, length, numbers, stated};
 use super::ray::ends;
 use super::{AnyShape, Law, Numbers, PairPlanes, Report, Scale};
 use crate::{
-    CastMethod, Impact, LinearCast, LinearCastOptions, Motion, SignedDistance, SignedDistanceOptions, StartInContact,
+    CastMethod, LinearCast, LinearCastOptions, Motion, SignedDistance, SignedDistanceOptions, StartInContact,
     WarmStart, linear_cast as ask, signed_distance,
 };
 
@@ -89,13 +89,7 @@ fn asked<V: Vector>(
     let mut cast = |how, options: LinearCastOptions<V>, is_reversed: bool| {
         let reversed = Motion { velocity_a: motion.velocity_b, velocity_b: motion.velocity_a };
         let cast = if is_reversed { ask(b, a, reversed, options) } else { ask(a, b, motion, options) }.ok()?;
-        let normal = |hit: &Impact<V>| hit.normal.map(|n| if is_reversed { -n } else { n });
-        let mut one = Told::new(how, options.max_time, &cast, |hit| (hit.time, normal(hit)));
-        if is_reversed {
-            one.reverse();
-        }
-        one.tolerance = options.tolerance.as_f64();
-        told.push(one);
+        told.push(Told::of_motion(how, [options.max_time, options.tolerance], &cast, is_reversed));
         Some(cast)
     };
     let lean = LinearCastOptions {

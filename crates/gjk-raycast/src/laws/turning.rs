@@ -43,13 +43,7 @@ pub fn motion_cast_judged<V: Vector>(
         let cast =
             if is_reversed { ask(b, motion_b, a, motion_a, options) } else { ask(a, motion_a, b, motion_b, options) }
                 .ok()?;
-        let normal = |hit: &Impact<V>| hit.normal.map(|n| if is_reversed { -n } else { n });
-        let mut one = Told::new(how, options.max_time, &cast, |hit| (hit.time, normal(hit)));
-        if is_reversed {
-            one.reverse();
-        }
-        one.tolerance = options.tolerance.as_f64();
-        told.push(one);
+        told.push(Told::of_motion(how, [options.max_time, options.tolerance], &cast, is_reversed));
         Some(cast)
     };
     let lean = MotionCastOptions {
