@@ -50,6 +50,12 @@ impl<V: Vector> Frame<V> {
         self.error * self.scale * Scalar::from_f64(3.0)
     }
 
+    /// The distance of the cores, in the unit, of bodies that are so far apart.
+    #[inline(always)]
+    pub(crate) fn between_cores(&self, distance: V::Scalar) -> V::Scalar {
+        distance * self.per_unit + self.radius
+    }
+
     /// Cores no farther apart than this touch.
     #[inline(always)]
     fn touching(&self) -> V::Scalar {

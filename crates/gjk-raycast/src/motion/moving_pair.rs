@@ -193,7 +193,7 @@ impl<'s, V: Vector> MovingPair<'s, V> {
             Some(face) => Gjk::at_face(face.corners().map(in_unit), face.weights, face.v * per_unit),
         };
         let options = GjkOptions {
-            limit: limits.distance * per_unit + radius,
+            limit: frame.between_cores(limits.distance),
             tolerance: limits.rough,
             ..GjkOptions::new(state.normal, MAX_DEPTH_ITERATIONS)
         };

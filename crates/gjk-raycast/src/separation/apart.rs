@@ -127,11 +127,11 @@ impl<'a, V: Vector> FirstSearch<'a, V> {
         options: GjkOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> Option<End> {
-        let Frame { offset, scale, per_unit, radius, .. } = self.frame;
+        let Frame { offset, scale, .. } = self.frame;
         if self.pair.closest_points_for_search(offset * scale, self.size).is_some() {
             return None;
         }
-        let options = GjkOptions { limit: options.limit * per_unit + radius, ..options };
+        let options = GjkOptions { limit: self.frame.between_cores(options.limit), ..options };
         let frame = Frame { radius: touching, ..self.frame };
         Some(measured(state, &mut self.pair, frame, options, observer))
     }

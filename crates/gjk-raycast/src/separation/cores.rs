@@ -193,11 +193,6 @@ impl<'a, V: Vector> Cores<'a, V> {
         Some((points, points.a - points.b + offset))
     }
 
-    /// The distance of the cores beyond which the search may stop: that of bodies whose distance is the wanted limit.
-    pub(super) fn limit(&self, wanted: &Wanted<V>) -> V::Scalar {
-        wanted.options.limit * self.frame.per_unit + self.frame.radius
-    }
-
     /// GJK on the cores, from their closest points where these are known, until their distance is known as well as is
     /// wanted. The search also ends where the bodies meet to rounding. But where the depth is wanted, bodies whose
     /// radii overlap have it by the distance of their cores, so that only cores which meet end the search.
@@ -217,7 +212,7 @@ impl<'a, V: Vector> Cores<'a, V> {
             return End::Overlap;
         }
         let options = GjkOptions {
-            limit: self.limit(wanted),
+            limit: self.frame.between_cores(wanted.options.limit),
             tolerance: wanted.tolerance,
             sub_algorithm: wanted.sub_algorithm,
             ..GjkOptions::new(state.normal, wanted.options.max_iterations.saturating_sub(self.iterations))

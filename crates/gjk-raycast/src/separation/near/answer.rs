@@ -61,7 +61,7 @@ impl<V: Vector> Cores<'_, V> {
             return false;
         }
         // A search that ended at the limit might have gone on.
-        let limit = self.limit(wanted) + self.frame.error;
+        let limit = self.frame.between_cores(wanted.options.limit) + self.frame.error;
         let begun = state.filter(|state| wanted.is_plain() && !(state.lower > limit));
         let before = begun.map_or(0, |state| state.iterations);
         let left = before + wanted.options.max_iterations.saturating_sub(self.iterations);
