@@ -149,6 +149,13 @@ fn pairs<V: Vector>(tree: &Bvh<V>, boxes: &[Option<Aabb<V>>], distance: V::Scala
     assert_eq!(found, due, "pairs");
     assert_eq!(again, due, "pairs, in pieces");
 
+    for mut nearest in [tree.nearest_pairs_within(), tree.nearest_pairs_within().depth_first()] {
+        let told = core::iter::from_fn(|| nearest.next(distance));
+        let mut told: Vec<_> = told.map(|([i, j], _)| (i.min(j), i.max(j))).collect();
+        told.sort_unstable();
+        assert_eq!(told, due, "pairs, mostly the nearest first, or depth first");
+    }
+
     let mut between = Vec::new();
     tree.pairs_between(tree, distance).visit(|i, j| {
         between.push((i, j));

@@ -29,12 +29,26 @@ use crate::{Aabb, Vector};
 #[derive(Clone, Debug)]
 pub struct NearestPairs<'t, V: Vector> {
     among: PairSearch<'t, V>,
-    /// The pairs still to be looked into whose bound is 0, the last one first: that one is deepest, so that the first
-    /// pair of items is found soon where all boxes overlap, and many such pairs need no order.
-    touching: Vec<Pair>,
-    /// The others, each as a number with the second of the pair: the least bound on top.
+    order: Order,
+    /// The pairs to be looked into first, the last one foremost, which is deepest. Each is its bound and the first link
+    /// as one number, in descending order, with the second link.
+    deep: Vec<(u64, Link)>,
+    /// The others, the least bound on top.
     queue: BinaryHeap<(u64, Link)>,
     nodes: usize,
+}
+
+/// Which pairs go on the stack. Those whose bound is 0 always do: so the first pair of items is found soon where all
+/// boxes overlap, and many such pairs need no order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Order {
+    /// All of them.
+    Deep,
+    /// All of them until a pair is told: mostly one that is near, so that the caller's limit keeps others out of the
+    /// queue.
+    DeepAtFirst,
+    /// No others.
+    Nearest,
 }
 
 impl<V: Vector> Bvh<V> {
@@ -53,9 +67,15 @@ impl<V: Vector> Bvh<V> {
 
 impl<'t, V: Vector> NearestPairs<'t, V> {
     fn new(among: PairSearch<'t, V>) -> Self {
-        let mut pairs = Self { among, touching: Vec::new(), queue: BinaryHeap::new(), nodes: 0 };
-        pairs.push(0.0, among.start);
-        pairs
+        let (order, deep) = (Order::DeepAtFirst, alloc::vec![(among.start.0.after_descending(0.0), among.start.1)]);
+        Self { among, order, deep, queue: BinaryHeap::new(), nodes: 0 }
+    }
+
+    /// The same pairs, depth first: of the children of two nodes the nearest first, and all of them before the others
+    /// that are near. If the limit stays as it is, and one pair is enough, it is mostly found after one descent.
+    #[must_use]
+    pub fn depth_first(self) -> Self {
+        Self { order: Order::Deep, ..self }
     }
 
     /// The next pair whose boxes are at most `limit` apart, with a lower bound on their distance. `None` if there is no
@@ -66,12 +86,19 @@ impl<'t, V: Vector> NearestPairs<'t, V> {
         let end = coarse_limit(&self.coarse(&nowhere), limit);
         while let Some(((a, b), bound)) = self.pop() {
             if bound > end {
-                break;
+                // What is in the queue is farther still.
+                if self.deep.is_empty() {
+                    break;
+                }
+                continue;
             }
             if are_items((a, b)) {
                 let pair = [a.index(), b.index()];
                 let bound = BoxDistance::new(self.among.a.boxes[pair[0]]).bound(&self.among.b.boxes[pair[1]]);
                 if bound <= limit {
+                    if self.order == Order::DeepAtFirst {
+                        (self.order, self.queue) = (Order::Nearest, core::mem::take(&mut self.deep).into());
+                    }
                     return Some((pair, bound));
                 }
             } else {
@@ -79,7 +106,7 @@ impl<'t, V: Vector> NearestPairs<'t, V> {
                 self.expand((a, b), end);
             }
         }
-        (self.touching, self.queue) = Default::default();
+        (self.deep, self.queue) = Default::default();
         None
     }
 
@@ -92,32 +119,30 @@ impl<'t, V: Vector> NearestPairs<'t, V> {
     /// What is still to be searched, in so many parts of about equal promise, for as many threads.
     #[must_use]
     pub fn deal(self, parts: usize) -> Vec<Self> {
-        let (parts, among) = (parts.max(1), self.among);
-        let nothing = |_| Self { among, touching: Vec::new(), queue: BinaryHeap::new(), nodes: 0 };
+        let (parts, among, order) = (parts.max(1), self.among, self.order);
+        let nothing = |_| Self { among, order, deep: Vec::new(), queue: BinaryHeap::new(), nodes: 0 };
         let mut dealt: Vec<_> = (0..parts).map(nothing).collect();
         dealt[0].nodes = self.nodes;
         for (i, pair) in self.queue.into_sorted_vec().into_iter().rev().enumerate() {
             dealt[i % parts].queue.push(pair);
         }
-        for (i, pair) in self.touching.into_iter().enumerate() {
-            dealt[i % parts].touching.push(pair);
+        for (i, pair) in self.deep.into_iter().enumerate() {
+            dealt[i % parts].deep.push(pair);
         }
         dealt
     }
 
     fn push(&mut self, bound: f32, (a, b): Pair) {
-        if bound == 0.0 {
-            self.touching.push((a, b));
+        let pair = (a.after_descending(bound), b);
+        if bound == 0.0 || self.order != Order::Nearest {
+            self.deep.push(pair);
         } else {
-            self.queue.push((a.after_descending(bound), b));
+            self.queue.push(pair);
         }
     }
 
     fn pop(&mut self) -> Option<(Pair, f32)> {
-        if let Some(pair) = self.touching.pop() {
-            return Some((pair, 0.0));
-        }
-        let (number, b) = self.queue.pop()?;
+        let (number, b) = self.deep.pop().or_else(|| self.queue.pop())?;
         let (a, bound) = Link::with_bound_descending(number);
         Some(((a, b), bound))
     }
@@ -137,7 +162,7 @@ impl<'t, V: Vector> NearestPairs<'t, V> {
             boxes = self.among.as_b_sees(&boxes);
         }
         let (others, seconds) = second.parts(b);
-        let is_one = same && a == b;
+        let (is_one, start) = (same && a == b, self.deep.len());
         for (lane, &first) in firsts.iter().enumerate().filter(|(_, link)| **link != Link::NONE) {
             let bounds = self.coarse(&boxes.get(lane)).bounds(&others).to_array();
             // A pair counts once, and an item makes none with itself.
@@ -148,6 +173,7 @@ impl<'t, V: Vector> NearestPairs<'t, V> {
                 }
             }
         }
+        self.deep[start..].sort_unstable();
     }
 }
 

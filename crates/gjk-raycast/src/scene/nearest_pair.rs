@@ -96,7 +96,7 @@ impl<S: SupportMap> Among<'_, S> {
         within: ScalarOf<S>,
         options: DistanceOptions<S::Vector>,
     ) -> SceneAnyWithin<[usize; 2]> {
-        any(Pairing::within(*self), self.scene.tree.nearest_pairs_within(), within, options)
+        any(Pairing::within(*self), self.scene.tree.nearest_pairs_within().depth_first(), within, options)
     }
 
     /// Whether any of these bodies is no farther than `within` from any of another scene: whether
@@ -107,7 +107,7 @@ impl<S: SupportMap> Among<'_, S> {
         within: ScalarOf<S>,
         options: DistanceOptions<S::Vector>,
     ) -> SceneAnyWithin<[usize; 2]> {
-        any(Pairing::between(*self, other), self.scene.tree.nearest_pairs(&other.tree), within, options)
+        any(Pairing::between(*self, other), self.scene.tree.nearest_pairs(&other.tree).depth_first(), within, options)
     }
 }
 
