@@ -1,4 +1,4 @@
-//! Where two outlines overlap.
+//! Where two outlines overlap: the one is cut along each edge of the other (Sutherland and Hodgman).
 
 use convex_support::Scalar;
 use smallvec::SmallVec;

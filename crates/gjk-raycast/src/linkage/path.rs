@@ -1,4 +1,5 @@
-//! Whether a linkage touches anything along a path.
+//! Whether a linkage touches anything along a path: the bodies that come near along an edge ([`sweep`](super::sweep))
+//! are cast against one another, as far as the first contact so far.
 
 use convex_support::{Core, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;

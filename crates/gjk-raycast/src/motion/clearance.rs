@@ -1,4 +1,5 @@
-//! The least distance of two bodies that move and turn.
+//! The least distance of two bodies that move and turn: the question and its answer; the search is
+//! [`least`](super::least).
 
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;

@@ -1,4 +1,4 @@
-//! A body and its motion.
+//! A body and its motion: where it is at a time, and a bound on how its points accelerate in between.
 
 use convex_support::{AngularVelocity, BoundingSphere, Core, CoreKind, Matrix, Parallelotope, Scalar, Spin, Vector};
 use num_traits::Float;
