@@ -150,8 +150,8 @@ fn extent_bounds_the_core<V: Vector>(&Case { shape, d, .. }: &Case<'_, V>) -> He
     at_most(core_point(shape, d).norm(), extent, extent * V::Scalar::EPSILON * V::Scalar::from_f64(8.0))
 }
 
-/// Answers near contact are proved by the [rounding](SupportMap::rounding) alone. One that is copied from another shape,
-/// such as the part that a shape is made of, is mostly too small.
+/// Answers near contact are proved by the [rounding](SupportMap::rounding) alone. One that is copied from another
+/// shape, such as the part that a shape is made of, is mostly too small.
 fn rounding_covers_what_support_points_show<V: Vector>(&Case { shape, d, e, .. }: &Case<'_, V>) -> Held {
     let Rounding { extent, error, error_length } = shape.rounding();
     let (Some(d), Some(n)) = (d.unit(), e.unit()) else { return Ok(()) };

@@ -288,8 +288,8 @@ impl<S: SupportMap> Linkage<S> {
         if !cast.is_certain() && to - from < whole {
             cast = cast_to(whole)?;
         }
-        // Where the joints' values leave less than half of the digits of the pose, that the bodies seem to touch, within
-        // rounding, says nothing.
+        // Where the joints' values leave less than half of the digits of the pose, that the bodies seem to touch,
+        // within rounding, says nothing.
         if let Outcome::Hit(hit) = cast.outcome
             && !cast.is_certain()
         {
