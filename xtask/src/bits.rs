@@ -1,9 +1,9 @@
 //! `cargo xtask bits`: whether this machine answers as others do, to the last bit.
 //!
-//! Questions of every kind, dimension and precision are drawn from fixed seeds and answered; every field of the answers,
-//! their derivatives, certificates and iteration counts are hashed. Numbers are written with the digits that tell them
-//! from their neighbours, so that one bit in one of them changes the hash. `bits.txt` keeps the hashes that every
-//! machine is to have.
+//! Questions of every kind, dimension and precision are drawn from fixed seeds and answered; every field of the
+//! answers, their derivatives, certificates and iteration counts are hashed. Numbers are written with the digits that
+//! tell them from their neighbours, so that one bit in one of them changes the hash. `bits.txt` keeps the hashes that
+//! every machine is to have.
 
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;

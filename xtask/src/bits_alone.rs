@@ -1,5 +1,5 @@
-//! `cargo xtask bits` alone: the program that `.ci/bits` compiles for each of its targets, without what validates, judges
-//! and draws, which would double the time.
+//! `cargo xtask bits` alone: the program that `.ci/bits` compiles for each of its targets, without what validates,
+//! judges and draws, which would double the time.
 #![allow(dead_code, missing_docs, reason = "its modules are those of xtask")]
 
 mod bits;

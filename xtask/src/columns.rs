@@ -1,9 +1,10 @@
-//! Queries out of tables, and answers into columns: CSV for programs that have a million rows, and for which JSON would cost more than
-//! the answers.
+//! Queries out of tables, and answers into columns: CSV for programs that have a million rows, and for which JSON would
+//! cost more than the answers.
 //!
-//! A template is a query in which `$name` stands for the cell of that column: bare for a number, between quotes for a text. The first
-//! row of a table has the names. A row is filled into the template as text, so that a number is read once, and all else is as for a
-//! line of JSON. One row is one line: a cell between quotes may have commas and doubled quotes, and no line break.
+//! A template is a query in which `$name` stands for the cell of that column: bare for a number, between quotes for a
+//! text. The first row of a table has the names. A row is filled into the template as text, so that a number is read
+//! once, and all else is as for a line of JSON. One row is one line: a cell between quotes may have commas and doubled
+//! quotes, and no line break.
 
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -161,8 +162,8 @@ impl Columns {
         self.names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(",") + "\n"
     }
 
-    /// The row of an answer, with empty cells for what the answer lacks. `id` is what the query calls itself, and `error` what is wrong
-    /// with it.
+    /// The row of an answer, with empty cells for what the answer lacks. `id` is what the query calls itself, and
+    /// `error` what is wrong with it.
     #[must_use]
     pub fn row(&self, id: &str, outcome: &Result<Answer, Problem>) -> Vec<u8> {
         let mut row = Vec::with_capacity(32 * self.names.len());

@@ -33,8 +33,8 @@ enum Task {
     ///
     /// Exit status: 0 if everything is right, 1 if some answer is wrong, 2 if a file could not be read.
     Validate(validate::Scope),
-    /// Ask whether the edges of `path` queries are free, and print a table: what is free and what is not, in which time,
-    /// and beside it how many of the edges that touch something sampling takes for free.
+    /// Ask whether the edges of `path` queries are free, and print a table: what is free and what is not, in which
+    /// time, and beside it how many of the edges that touch something sampling takes for free.
     ///
     /// Exit status: 0, or 2 if a file could not be read or a path is none.
     Path(paths::Choice),

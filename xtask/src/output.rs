@@ -4,8 +4,8 @@ use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// The exit status of a task: 0 if everything is right, 1 if not, and 2, after a word to the person who started it, if it
-/// could not be done.
+/// The exit status of a task: 0 if everything is right, 1 if not, and 2, after a word to the person who started it, if
+/// it could not be done.
 pub fn ended(outcome: Result<bool, impl Display>) -> ExitCode {
     match outcome {
         Ok(true) => ExitCode::SUCCESS,

@@ -78,7 +78,8 @@ fn compile(half: &str, work: &Path) -> Result<(), String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
     command.args(["build", "--release", "--locked", "--lib", "--target", TARGET, "--features", half]);
-    // Of functions as short as those of vectors a call takes more bytes than the body, which `opt-level = "z"` misjudges.
+    // Of functions as short as those of vectors a call takes more bytes than the body, which `opt-level = "z"`
+    // misjudges.
     command.env("RUSTFLAGS", "-Cllvm-args=-inline-threshold=40");
     command.arg("--target-dir").arg(work).arg("--manifest-path").arg(Path::new(PACKAGE).join("Cargo.toml"));
     let status = command.status().map_err(|why| format!("cannot run cargo: {why}"))?;

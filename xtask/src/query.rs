@@ -35,8 +35,8 @@ pub struct Choice {
     /// Write each query as it is, with its `answer` and the `certificate` that proves it, for `cargo xtask prove`.
     #[arg(long)]
     certify: bool,
-    /// Read CSV, whose first row has the names of its columns: the query in which `$name` is the cell of a column, as in
-    /// `{"query":"distance","a":{"type":"ball","radius":$r},"b":{"type":"point","at":[$x,$y,$z]}}`.
+    /// Read CSV, whose first row has the names of its columns: the query in which `$name` is the cell of a column, as
+    /// in `{"query":"distance","a":{"type":"ball","radius":$r},"b":{"type":"point","at":[$x,$y,$z]}}`.
     #[arg(long, value_name = "QUERY", value_parser = Template::parse, conflicts_with = "certify")]
     template: Option<Template>,
     /// Write CSV with these fields of the answers, as in `id,distance,lower,point_a.0,error`.

@@ -1,11 +1,11 @@
 //! Counts the loads that wait for a store, in a trace of memory from `valgrind --tool=lackey --trace-mem=yes`:
 //! `blocked BEGIN END < TRACE`, of the instructions between those at two addresses. `benches/blocked.sh` runs it.
 //!
-//! A processor forwards a store that is not yet in the cache to a later load, if the store wrote all that the load reads.
-//! If it wrote only a part, as where two numbers are stored one by one and then copied at once, the load waits until the
-//! store is in the cache: some 12 cycles. Counts of instructions do not show this, and clocks hardly do. A load counts
-//! here if the newest of the stores that wrote any of its bytes did not write all of them, and is no more than
-//! [`RECENT`] instructions old.
+//! A processor forwards a store that is not yet in the cache to a later load, if the store wrote all that the load
+//! reads. If it wrote only a part, as where two numbers are stored one by one and then copied at once, the load waits
+//! until the store is in the cache: some 12 cycles. Counts of instructions do not show this, and clocks hardly do. A
+//! load counts here if the newest of the stores that wrote any of its bytes did not write all of them, and is no more
+//! than [`RECENT`] instructions old.
 #![allow(clippy::print_stdout, reason = "printing is what it is for")]
 
 use std::collections::VecDeque;

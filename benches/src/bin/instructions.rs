@@ -1,8 +1,8 @@
 //! Runs one row of the workloads once, for callgrind to count: `instructions ROW`, or `instructions` to list the rows.
 //!
-//! `benches/instructions.sh` runs them all and compares with the committed table. `instructions --addresses` prints where
-//! the code begins that is run once between the inputs and the end, and where that which follows it; `benches/blocked.sh`
-//! counts between them.
+//! `benches/instructions.sh` runs them all and compares with the committed table. `instructions --addresses` prints
+//! where the code begins that is run once between the inputs and the end, and where that which follows it;
+//! `benches/blocked.sh` counts between them.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "printing is what it is for")]
 
 use std::process::ExitCode;

@@ -1,6 +1,6 @@
 //! Measures every workload in one run. `--write` puts the tables into `docs/comparison.md` and the rows into
-//! `docs/performance.csv`, `--csv` prints the rows, and otherwise the tables are printed. `--profiles` adds what the build
-//! profile does to our times. `--recorded` writes the tables of the recorded rows again, and measures nothing.
+//! `docs/performance.csv`, `--csv` prints the rows, and otherwise the tables are printed. `--profiles` adds what the
+//! build profile does to our times. `--recorded` writes the tables of the recorded rows again, and measures nothing.
 //!
 //! `summary [--write | --csv | --recorded] [--profiles] [--milliseconds PER_ROW] [W1] [W2] [W3far] [W3near] [W3b]`
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "printing is what it is for")]

@@ -41,8 +41,18 @@ const SLACK: f64 = 16.0;
 /// A shape of any type, so that the laws are compiled once for each vector type.
 type AnyShape<'s, V> = &'s dyn SupportMap<Vector = V>;
 
-/// A law of one shape and two directions; the last argument is the rounding that the shape states, as a length.
-type Law<V> = fn(AnyShape<'_, V>, V, V, <V as Vector>::Scalar) -> Result<(), TestCaseError>;
+/// What a law is about: one shape, two directions, and the rounding that the shape states, as a length.
+struct Case<'s, V: Vector> {
+    shape: AnyShape<'s, V>,
+    d: V,
+    e: V,
+    rounding: V::Scalar,
+}
+
+/// Whether a law holds.
+type Held = Result<(), TestCaseError>;
+
+type Law<V> = fn(&Case<'_, V>) -> Held;
 
 /// The configuration of property tests that draw the same `cases` in every run, so that one commit has one verdict.
 ///
@@ -88,19 +98,19 @@ pub fn check<V: Vector>(shape: AnyShape<'_, V>, d: V, e: V) -> Result<(), TestCa
     let core = shape.core();
     let place = core.origin.norm() + core.size();
     let rounding = V::Scalar::from_f64(SLACK) * (core.error + V::Scalar::EPSILON * place);
-    laws.into_iter().try_for_each(|(name, law)| {
-        law(shape, d, e, rounding).map_err(|broken| TestCaseError::fail(format!("{name}: {broken}")))
-    })
+    let case = Case { shape, d, e, rounding };
+    laws.into_iter()
+        .try_for_each(|(name, law)| law(&case).map_err(|broken| TestCaseError::fail(format!("{name}: {broken}"))))
 }
 
 /// Fails unless `a` is at most `b`, as lengths along a direction.
-fn at_most<S: Scalar>(a: S, b: S, rounding: S) -> Result<(), TestCaseError> {
+fn at_most<S: Scalar>(a: S, b: S, rounding: S) -> Held {
     // NaN fails this too.
     prop_assert!(a <= b + rounding, "{:?} is more than {:?} by more than {:?}", a, b, rounding);
     Ok(())
 }
 
-fn equal<S: Scalar>(a: S, b: S, rounding: S) -> Result<(), TestCaseError> {
+fn equal<S: Scalar>(a: S, b: S, rounding: S) -> Held {
     at_most(a, b, rounding)?;
     at_most(b, a, rounding)
 }
@@ -110,69 +120,39 @@ fn core_point<V: Vector>(shape: AnyShape<'_, V>, d: V) -> V {
     shape.core_support(d, &mut Hint::new())
 }
 
-fn support_point_reaches_the_support_value<V: Vector>(
-    shape: AnyShape<'_, V>,
-    d: V,
-    _: V,
-    rounding: V::Scalar,
-) -> Result<(), TestCaseError> {
+fn support_point_reaches_the_support_value<V: Vector>(&Case { shape, d, rounding, .. }: &Case<'_, V>) -> Held {
     equal(d.dot(shape.support(d)), support_value(shape, d), rounding * d.norm())
 }
 
-fn no_support_point_reaches_farther<V: Vector>(
-    shape: AnyShape<'_, V>,
-    d: V,
-    e: V,
-    rounding: V::Scalar,
-) -> Result<(), TestCaseError> {
+fn no_support_point_reaches_farther<V: Vector>(&Case { shape, d, e, rounding }: &Case<'_, V>) -> Held {
     at_most(e.dot(shape.support(d)), support_value(shape, e), rounding * e.norm())
 }
 
-fn support_value_is_positively_homogeneous<V: Vector>(
-    shape: AnyShape<'_, V>,
-    d: V,
-    _: V,
-    rounding: V::Scalar,
-) -> Result<(), TestCaseError> {
+fn support_value_is_positively_homogeneous<V: Vector>(&Case { shape, d, rounding, .. }: &Case<'_, V>) -> Held {
     let t = V::Scalar::from_f64(1.7);
     equal(support_value(shape, d * t), support_value(shape, d) * t, rounding * d.norm() * t)
 }
 
-fn support_value_is_subadditive<V: Vector>(
-    shape: AnyShape<'_, V>,
-    d: V,
-    e: V,
-    rounding: V::Scalar,
-) -> Result<(), TestCaseError> {
+fn support_value_is_subadditive<V: Vector>(&Case { shape, d, e, rounding }: &Case<'_, V>) -> Held {
     // Directions of like length, or the sum would say nothing about the shorter.
     let (Some(d), Some(e)) = (d.unit(), e.unit()) else { return Ok(()) };
     at_most(support_value(shape, d + e), support_value(shape, d) + support_value(shape, e), rounding)
 }
 
-fn origin_core_and_radius_make_the_set<V: Vector>(
-    shape: AnyShape<'_, V>,
-    d: V,
-    _: V,
-    rounding: V::Scalar,
-) -> Result<(), TestCaseError> {
+fn origin_core_and_radius_make_the_set<V: Vector>(&Case { shape, d, rounding, .. }: &Case<'_, V>) -> Held {
     let core = shape.core();
     let value = d.dot(core.origin) + d.dot(core_point(shape, d)) + d.norm() * core.radius;
     equal(value, support_value(shape, d), rounding * d.norm())
 }
 
-fn extent_bounds_the_core<V: Vector>(shape: AnyShape<'_, V>, d: V, _: V, _: V::Scalar) -> Result<(), TestCaseError> {
+fn extent_bounds_the_core<V: Vector>(&Case { shape, d, .. }: &Case<'_, V>) -> Held {
     let extent = shape.core().extent;
     at_most(core_point(shape, d).norm(), extent, extent * V::Scalar::EPSILON * V::Scalar::from_f64(8.0))
 }
 
-/// Answers near contact are proved by the [rounding](SupportMap::rounding) alone. One that is copied from another shape,
-/// such as the part that a shape is made of, is mostly too small.
-fn rounding_covers_what_support_points_show<V: Vector>(
-    shape: AnyShape<'_, V>,
-    d: V,
-    e: V,
-    _: V::Scalar,
-) -> Result<(), TestCaseError> {
+/// Answers near contact are proved by the [rounding](SupportMap::rounding) alone. One that is copied from another
+/// shape, such as the part that a shape is made of, is mostly too small.
+fn rounding_covers_what_support_points_show<V: Vector>(&Case { shape, d, e, .. }: &Case<'_, V>) -> Held {
     let Rounding { extent, error, error_length } = shape.rounding();
     let (Some(d), Some(n)) = (d.unit(), e.unit()) else { return Ok(()) };
     // A point is beyond the core by an error at most, and the farthest one short of it by another; the products round.
@@ -190,12 +170,7 @@ fn rounding_covers_what_support_points_show<V: Vector>(
     Ok(())
 }
 
-fn closest_point_of_the_core_is_the_closest<V: Vector>(
-    shape: AnyShape<'_, V>,
-    d: V,
-    e: V,
-    rounding: V::Scalar,
-) -> Result<(), TestCaseError> {
+fn closest_point_of_the_core_is_the_closest<V: Vector>(&Case { shape, d, e, rounding }: &Case<'_, V>) -> Held {
     let core = shape.core();
     if let CoreKind::Point(point) = core.kind {
         prop_assert_eq!(point, core_point(shape, d), "the only point of the core");
@@ -215,12 +190,7 @@ fn closest_point_of_the_core_is_the_closest<V: Vector>(
 
 /// Algorithms trust this without a check. Lines are aimed at the surface along a direction, from beyond it and from
 /// within, and past it.
-fn line_enters_where_it_certainly_does<V: Vector>(
-    shape: AnyShape<'_, V>,
-    d: V,
-    e: V,
-    rounding: V::Scalar,
-) -> Result<(), TestCaseError> {
+fn line_enters_where_it_certainly_does<V: Vector>(&Case { shape, d, e, rounding }: &Case<'_, V>) -> Held {
     let core = shape.core();
     let size = core.size();
     let (at, away) = (shape.support(d), e * (size / e.norm()));
@@ -254,12 +224,7 @@ fn line_enters_where_it_certainly_does<V: Vector>(
     Ok(())
 }
 
-fn hints_never_change_the_value<V: Vector>(
-    shape: AnyShape<'_, V>,
-    d: V,
-    e: V,
-    rounding: V::Scalar,
-) -> Result<(), TestCaseError> {
+fn hints_never_change_the_value<V: Vector>(&Case { shape, d, e, rounding }: &Case<'_, V>) -> Held {
     let fresh = d.dot(core_point(shape, d));
     let mut hint = Hint::new();
     shape.core_support(e, &mut hint);
@@ -274,12 +239,7 @@ fn hints_never_change_the_value<V: Vector>(
     equal(d.dot(shape.core_support(d, &mut foreign)), fresh, rounding * d.norm())
 }
 
-fn bounds_contain_the_set_and_touch_it<V: Vector>(
-    shape: AnyShape<'_, V>,
-    d: V,
-    _: V,
-    rounding: V::Scalar,
-) -> Result<(), TestCaseError> {
+fn bounds_contain_the_set_and_touch_it<V: Vector>(&Case { shape, d, rounding, .. }: &Case<'_, V>) -> Held {
     let (aabb, sphere, p) = (bounding_box(shape), bounding_sphere(shape), shape.support(d));
     at_most((p - sphere.center).norm(), sphere.radius, rounding)?;
     at_most(sphere.radius, aabb.half_extents().norm(), rounding)?;
@@ -292,12 +252,7 @@ fn bounds_contain_the_set_and_touch_it<V: Vector>(
     Ok(())
 }
 
-fn zero_gives_a_point_of_the_set<V: Vector>(
-    shape: AnyShape<'_, V>,
-    d: V,
-    e: V,
-    rounding: V::Scalar,
-) -> Result<(), TestCaseError> {
+fn zero_gives_a_point_of_the_set<V: Vector>(&Case { shape, d, e, rounding }: &Case<'_, V>) -> Held {
     let zero = shape.support(V::ZERO);
     prop_assert!(zero.is_finite(), "the support point for no direction is a point, not {:?}", zero);
     at_most(e.dot(zero), support_value(shape, e), rounding * e.norm())?;

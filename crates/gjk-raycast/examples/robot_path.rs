@@ -1,5 +1,5 @@
-//! A robot reaches from one side of a post to the other. Which of its links may ever meet? Is the straight way free, and
-//! if not, what is met first? And the way around?
+//! A robot reaches from one side of a post to the other. Which of its links may ever meet? Is the straight way free,
+//! and if not, what is met first? And the way around?
 //!
 //! `cargo run -p gjk-raycast --example robot_path`
 

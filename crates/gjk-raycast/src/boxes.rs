@@ -114,8 +114,8 @@ impl Zonotope {
         Float::sqrt(self.squared[k])
     }
 
-    /// The unit vector along the cross product of two edges, and their area; or if they are parallel, by how much one of
-    /// them would have to be changed to be a multiple of the other.
+    /// The unit vector along the cross product of two edges, and their area; or if they are parallel, by how much one
+    /// of them would have to be changed to be a multiple of the other.
     #[inline(always)]
     fn across(&self, [i, j]: [usize; 2]) -> Result<(Vec3, f64), f64> {
         let (e, f, le, lf) = (self.edge(i), self.edge(j), self.squared[i], self.squared[j]);
@@ -319,8 +319,8 @@ pub(crate) enum BoxesMeet<V> {
     Meet,
 }
 
-/// Whether two boxes meet; `None` if they are not boxes, the first is flat, or they are so near to contact that it is in
-/// doubt. The search ends at the first axis that separates them. For the same pairs, half of which overlap,
+/// Whether two boxes meet; `None` if they are not boxes, the first is flat, or they are so near to contact that it is
+/// in doubt. The search ends at the first axis that separates them. For the same pairs, half of which overlap,
 /// [`Zonotope::nearest_facet`] takes 3.4 times the instructions (`signed_distance/cuboid-cuboid` and
 /// `intersect/cuboid-cuboid` of `benches/instructions.txt`).
 ///
@@ -664,8 +664,8 @@ mod tests {
         assert!(segments.nearest_facet::<DVec3>().is_none(), "their difference has no inside");
     }
 
-    /// In the plane a facet has one edge and its parallels: the unit square, and one on its corner at (0, 2 + 1/4), whose
-    /// lowest corner is √2 below.
+    /// In the plane a facet has one edge and its parallels: the unit square, and one on its corner at (0, 2 + 1/4),
+    /// whose lowest corner is √2 below.
     #[test]
     fn a_square_on_its_corner_leaves_a_square_upward() {
         let square = Parallelotope { center: DVec2::ZERO, half_edges: [DVec2::X, DVec2::Y, DVec2::ZERO] };

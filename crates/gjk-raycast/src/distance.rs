@@ -1,4 +1,5 @@
-//! The distance of two shapes (the paper's Algorithm 2).
+//! How far apart two shapes are: by closed forms, or by GJK (the paper's Algorithm 2); near contact, where rounding
+//! would decide, by a second measurement. How deep shapes are in one another is another question, `signed_distance`.
 
 use convex_support::numerics::bound::raised;
 use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once, compiled_table};

@@ -2,9 +2,9 @@
 //!
 //! Let `A` grow about its centre `a`, and `B` about `b`, by one scale `s`. A point in common,
 //! `a + s(x − a) = b + s(y − b)` with `x` in `A` and `y` in `B`, is the same as `b − a` in `s·C`, where
-//! `C = (A − a) − (B − b)` contains zero. So the least `s` is `1/λ` where the ray from zero along `b − a` leaves `C`: the
-//! line is cast back, as for a [`ray_exit`](crate::ray_exit()), and the bracket is that of this cast. Each shape is taken
-//! relative to its centre, so that the bracket is as narrow far from the world's origin as at it.
+//! `C = (A − a) − (B − b)` contains zero. So the least `s` is `1/λ` where the ray from zero along `b − a` leaves `C`:
+//! the line is cast back, as for a [`ray_exit`](crate::ray_exit()), and the bracket is that of this cast. Each shape is
+//! taken relative to its centre, so that the bracket is as narrow far from the world's origin as at it.
 
 use core::error::Error;
 use core::fmt::{self, Display, Formatter};
@@ -124,8 +124,8 @@ pub struct GrowthDistance<V: Vector> {
 }
 
 impl<V: Vector> GrowthDistance<V> {
-    /// The warm start for the [question of the next frame](GrowthOptions::warm_start), from this answer and its own warm
-    /// start.
+    /// The warm start for the [question of the next frame](GrowthOptions::warm_start), from this answer and its own
+    /// warm start.
     #[must_use]
     pub fn warm_start(&self, before: Option<WarmStart<V>>) -> Option<WarmStart<V>> {
         self.normal.map(|normal| WarmStart::after(before, normal)).or(before)

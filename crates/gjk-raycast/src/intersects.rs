@@ -1,4 +1,4 @@
-//! Whether two shapes meet.
+//! Whether two shapes meet: the first plane between them, or the first point in common, ends the search.
 
 use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;

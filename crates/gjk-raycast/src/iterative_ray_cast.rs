@@ -1,4 +1,4 @@
-//! A ray cast from closest points alone (the paper's Algorithm 1).
+//! A ray cast from closest points alone (the paper's Algorithm 1), for what tells no support points.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float;

@@ -57,9 +57,9 @@ impl<H, V> Outcome<H, V> {
         }
     }
 
-    /// Ends a cast of which no plane proves that it ends before the hit, and returns the upper bound that is left. Where
-    /// the hit may be after the end, by rounding, it has none, so that neither a hit nor a miss is certain; and where
-    /// the `time` of the hit is after the end, or no number, it is no hit.
+    /// Ends a cast of which no plane proves that it ends before the hit, and returns the upper bound that is left.
+    /// Where the hit may be after the end, by rounding, it has none, so that neither a hit nor a miss is certain; and
+    /// where the `time` of the hit is after the end, or no number, it is no hit.
     pub(crate) fn until<S: Scalar>(&mut self, end: S, upper: S, time: impl FnOnce(&H) -> S) -> S {
         if let Self::Hit(hit) = self {
             let time = time(hit);
@@ -130,8 +130,8 @@ pub struct Cast<H, V: Vector> {
     /// the normal of the last separating plane.
     pub outcome: Outcome<H, V>,
     /// The bodies, or the ray and its target, have no point in common before this time. For a miss it is infinite, or
-    /// the end of a motion that turns. If bodies may [begin in contact](crate::StartInContact::IfDeeper), no hit in that
-    /// sense happens before.
+    /// the end of a motion that turns. If bodies may [begin in contact](crate::StartInContact::IfDeeper), no hit in
+    /// that sense happens before.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
     /// They have had a point in common by this time, which is not after the end of the cast. If they graze one another
@@ -172,9 +172,9 @@ pub struct Impact<V: Vector> {
     /// distance](crate::LinearCastOptions::target_distance) it is a point of `b`. If the bodies overlap at the start,
     /// it is a point in both but for rounding, as in [`distance`](crate::distance).
     pub point: V,
-    /// The unit normal of contact, out of `b` towards `a`. If the bodies overlap at the start by more than rounding (16ε
-    /// of their sizes, 4ε of their distances from the origin, and four times the errors that they state), it is `None`;
-    /// with [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.
+    /// The unit normal of contact, out of `b` towards `a`. If the bodies overlap at the start by more than rounding
+    /// (16ε of their sizes, 4ε of their distances from the origin, and four times the errors that they state), it is
+    /// `None`; with [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.
     pub normal: Option<V>,
 }
 

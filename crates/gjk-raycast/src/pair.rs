@@ -1,5 +1,5 @@
-//! Two bodies as a search sees them: behind one pointer, so that the search is compiled once for all shapes, and as their
-//! difference, which is a [body](crate::body) itself.
+//! Two bodies as a search sees them: behind one pointer, so that the search is compiled once for all shapes, and as
+//! their difference, which is a [body](crate::body) itself.
 
 use convex_support::{
     CertainCrossing, Core, CoreKind, Hint, LineQuery, Parallelotope, Rounding, Scalar, ScalarOf, SupportMap, Vector,

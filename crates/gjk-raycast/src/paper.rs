@@ -1,16 +1,16 @@
 //! Algorithms 1 to 3 as the paper prints them, to be read beside it, taught, and compared with.
 //!
 //! The names are the paper's: the ray is `s + λ·r`, `C` is the convex object, `v` the point of a simplex closest to
-//! zero, `w` and `p` the newest support points, `W` and `P` the points that are kept. The arithmetic is plain: no frame,
-//! no bounds, no closed forms. For answers that are certain, ask [`distance`](crate::distance()),
+//! zero, `w` and `p` the newest support points, `W` and `P` the points that are kept. The arithmetic is plain: no
+//! frame, no bounds, no closed forms. For answers that are certain, ask [`distance`](crate::distance()),
 //! [`ray_cast`](crate::ray_cast()) and [`iterative_ray_cast`](crate::iterative_ray_cast()), which add to these lines:
 //!
 //! - *to all*: coordinates relative to a point near both bodies, in a unit of their size, so that far bodies lose
 //!   nothing; bounds on rounding, and with them a bracket that holds; closed forms for shapes that know theirs;
 //! - *to Algorithm 1*: points about the ray that prove it to be inside;
-//! - *to Algorithm 2*: a direction turned by the curvature of smooth bodies (Newton's method), or towards the best plane
-//!   so far (a level bundle step), where the shortest vector alone converges linearly; and a closer measurement where the
-//!   two bodies are apart by little more than rounding;
+//! - *to Algorithm 2*: a direction turned by the curvature of smooth bodies (Newton's method), or towards the best
+//!   plane so far (a level bundle step), where the shortest vector alone converges linearly; and a closer measurement
+//!   where the two bodies are apart by little more than rounding;
 //! - *to Algorithm 3*: the same turned directions, the search for a [portal](crate::CastMethod::Portal), which is the
 //!   default, and a decision about rays that begin within rounding of the body.
 //!
@@ -197,8 +197,8 @@ pub fn gjk_ray_cast<V: Vector>(
 /// The points that are kept, at most as many as a simplex has.
 type Points<V> = SmallVec<[V; MAX_POINTS]>;
 
-/// Adds a point. A set that is full contains zero, as its `v` says, and then no loop comes here; one that rounding keeps
-/// full loses its oldest point.
+/// Adds a point. A set that is full contains zero, as its `v` says, and then no loop comes here; one that rounding
+/// keeps full loses its oldest point.
 fn add<V: Vector>(kept: &mut Points<V>, point: V) {
     if kept.len() > V::DIM {
         kept.remove(0);

@@ -120,8 +120,8 @@ compiled_once! {
     }
 }
 
-/// Casts the whole line of a ray from beyond a body back to where it comes from, and says in parameters of the ray where
-/// it leaves the body.
+/// Casts the whole line of a ray from beyond a body back to where it comes from, and says in parameters of the ray
+/// where it leaves the body.
 #[inline(always)]
 pub(crate) fn cast_back<V: Vector>(
     body: &mut dyn CastBody<Vector = V>,

@@ -1,4 +1,5 @@
-//! The signed distance of two shapes: how far apart they are, or how deep they overlap.
+//! The signed distance of two shapes: how far apart they are, as for `distance`; or how deep they overlap, in closed
+//! form for boxes and by an expanding polytope for others.
 
 use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;

@@ -40,8 +40,8 @@ fn pairs<V: Space>(mut each: impl FnMut(&Body<V>, &Body<V>, [V; 2], &mut Random,
 }
 
 /// Grown by the lower bound they are not yet in overlap, by the upper one they are no more apart; grown by the scale,
-/// the point is in both and the normal parts them. Bodies apart have to grow and bodies in overlap to shrink, and in the
-/// other order they are asked alike.
+/// the point is in both and the normal parts them. Bodies apart have to grow and bodies in overlap to shrink, and in
+/// the other order they are asked alike.
 fn touch_at_their_scale<V: Space>() {
     pairs::<V>(|a, b, at @ [center_a, center_b], _, what| {
         let answer = ask(&a.shape, &b.shape, at);

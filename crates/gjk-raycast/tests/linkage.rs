@@ -220,8 +220,8 @@ fn links_of_one_robot_meet_one_another() {
     assert!(ask(&chain, &[vec![0.0; 2], vec![2.5; 2]], &nothing).is_free(), "none is asked about another");
 }
 
-/// Two robots that both move are one linkage of two trees. Bars of length 1, 1.8 apart at their other ends, sink towards one
-/// another like a gate: their tips touch where they are 0.1 apart, at the cosine 0.85.
+/// Two robots that both move are one linkage of two trees. Bars of length 1, 1.8 apart at their other ends, sink
+/// towards one another like a gate: their tips touch where they are 0.1 apart, at the cosine 0.85.
 #[test]
 fn two_robots_meet_one_another() {
     let joints = [turning(None, DVec2::ZERO), turning(None, DVec2::new(1.8, 0.0))];
@@ -268,8 +268,8 @@ fn a_joint_slides_along_its_axis() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// A path is undecided, neither free nor in contact, from where a search was cut short, or where only rounding decides: a
-/// ball that the hand grazes in the middle of an edge. What is certainly met counts if it is met before that.
+/// A path is undecided, neither free nor in contact, from where a search was cut short, or where only rounding decides:
+/// a ball that the hand grazes in the middle of an edge. What is certainly met counts if it is met before that.
 #[test]
 fn a_path_is_undecided_from_where_a_cast_is() {
     let (robot, ways) = (arm(), [vec![0.0, 0.0], vec![2.0, 0.0]]);
@@ -360,7 +360,8 @@ fn frames(joints: &[Joint<DVec3>], values: &[f64]) -> Vec<(DQuat, DVec3)> {
 }
 
 /// Robots of random joints in a tree, some of which slide, among random bodies, on straight edges and on splines: at
-/// 40 or 200 times of what is said to be free, every pair is apart; and by the upper bound of a contact one pair is not.
+/// 40 or 200 times of what is said to be free, every pair is apart; and by the upper bound of a contact one pair is
+/// not.
 #[test]
 fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(), Box<dyn std::error::Error>> {
     let (mut seed, mut free, mut contacts) = (0x2004_1120_u64, 0, 0);
@@ -453,7 +454,8 @@ fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(
     Ok(())
 }
 
-/// The last of three bars in a row meets the first where both joints turn far enough: at α in both, |1 + 2·cos α| ≤ 0.1.
+/// The last of three bars in a row meets the first where both joints turn far enough: at α in both, |1 + 2·cos α| ≤
+/// 0.1.
 #[test]
 fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Error>> {
     let joints = [turning(None, DVec2::X), turning(Some(0), DVec2::X)];
@@ -493,10 +495,10 @@ fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Erro
     Ok(())
 }
 
-/// In the middle of the box the first ball of the hand is nearest to the post, and by the thousandth part of a millimetre
-/// never meets it, wherever the first joint is. The second one does, elsewhere. While the nearest boxes came first, 36,827
-/// parts were looked at before that was found. And a pose in which bodies touch to rounding, a box without a width, was
-/// halved until the limit of parts was reached.
+/// In the middle of the box the first ball of the hand is nearest to the post, and by the thousandth part of a
+/// millimetre never meets it, wherever the first joint is. The second one does, elsewhere. While the nearest boxes came
+/// first, 36,827 parts were looked at before that was found. And a pose in which bodies touch to rounding, a box
+/// without a width, was halved until the limit of parts was reached.
 #[test]
 fn where_links_almost_meet_does_not_hide_where_they_do() -> Result<(), Box<dyn std::error::Error>> {
     let ball = |radius: f64, at: DVec2| Posed::translated(Ball::new(radius)?, at);
@@ -708,8 +710,8 @@ fn the_largest_numbers_end() {
     assert!(path.is_free(), "it is far away: {path:?}");
 }
 
-/// An edge is looked at in parts, whose ends are none of the motion. A contact exactly at the end of one, a quarter of the
-/// edge, was undecided there, as one at the end of a motion is: whether it comes before that, rounding decides.
+/// An edge is looked at in parts, whose ends are none of the motion. A contact exactly at the end of one, a quarter of
+/// the edge, was undecided there, as one at the end of a motion is: whether it comes before that, rounding decides.
 #[test]
 fn a_contact_at_the_end_of_a_part_is_one() -> Result<(), Box<dyn std::error::Error>> {
     // By a quarter of a turn: the quaternion is not unit.
@@ -736,8 +738,8 @@ fn a_contact_at_the_end_of_a_part_is_one() -> Result<(), Box<dyn std::error::Err
     Ok(())
 }
 
-/// A contact exactly at a waypoint was undecided: whether it comes before the end of the one edge, rounding decides, and
-/// the next edge begins in it. That it does is what decides.
+/// A contact exactly at a waypoint was undecided: whether it comes before the end of the one edge, rounding decides,
+/// and the next edge begins in it. That it does is what decides.
 #[test]
 fn a_contact_at_a_waypoint_is_one() -> Result<(), Box<dyn std::error::Error>> {
     let robot = Linkage::new(
@@ -766,8 +768,8 @@ fn a_contact_at_a_waypoint_is_one() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The derivatives of the time by each value of both waypoints are what differences of the times of other paths tell, for
-/// a link against the scene and for one against another, near to and far from what it meets.
+/// The derivatives of the time by each value of both waypoints are what differences of the times of other paths tell,
+/// for a link against the scene and for one against another, near to and far from what it meets.
 #[test]
 fn the_time_of_a_contact_is_derived_by_the_waypoints() -> Result<(), Box<dyn std::error::Error>> {
     let robot = arm();

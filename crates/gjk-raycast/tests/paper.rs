@@ -159,8 +159,8 @@ proptest! {
 }
 
 /// "For a sphere, the average number of iterations is roughly proportional to −log ε", with `‖v‖² ≤ ε·max‖x − p‖²` for
-/// the condition: four for each decade. (The paper counts eight at 10⁻⁶, for rays of which it says no more than that they
-/// are random; these take 18.6 there, and eight at 3·10⁻⁴.)
+/// the condition: four for each decade. (The paper counts eight at 10⁻⁶, for rays of which it says no more than that
+/// they are random; these take 18.6 there, and eight at 3·10⁻⁴.)
 #[test]
 fn iterations_of_the_printed_algorithm_grow_as_minus_log_epsilon() {
     let sphere = Bare(|direction: DVec3| direction.normalize());

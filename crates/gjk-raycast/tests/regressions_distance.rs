@@ -67,8 +67,8 @@ fn d2_d6_a_common_translation_changes_nothing() {
     both(|| run::<Vec3A>(&[1.0, 1024.0, 65_536.0]), || run::<DVec3>(&[1.0, 1024.0, 1_048_576.0, 1e12]));
 }
 
-/// #1526, fcl #293, `openGJK` #13. The origin on a face, an edge or a corner of the simplex, and simplices of four points in
-/// a plane or three on a line: contact was dropped, or 0/0.
+/// #1526, fcl #293, `openGJK` #13. The origin on a face, an edge or a corner of the simplex, and simplices of four
+/// points in a plane or three on a line: contact was dropped, or 0/0.
 #[test]
 fn d3_d5_d26_contact_on_a_face_an_edge_or_a_corner_is_contact() {
     fn run<V: Vector3>() {

@@ -75,8 +75,9 @@ impl<const N: usize> Ellipsoid<N> {
         crate::shape::log_unit_ball_volume(rank) - 0.5 * self.log_det
     }
 
-    /// The factor by which the ellipsoid has to be scaled about its centre to have `x` on its surface: 1 on the surface,
-    /// less inside. It is |diag(1/a)·Rᵀ(x − c)|. Components across the affine hull of a flat ellipsoid are ignored.
+    /// The factor by which the ellipsoid has to be scaled about its centre to have `x` on its surface: 1 on the
+    /// surface, less inside. It is |diag(1/a)·Rᵀ(x − c)|. Components across the affine hull of a flat ellipsoid are
+    /// ignored.
     #[must_use]
     pub fn radius_at(&self, x: impl Into<[f64; N]>) -> f64 {
         radius_at(&self.center, self.axes.as_flattened(), &self.semi_axes, &x.into())
@@ -88,9 +89,9 @@ impl<const N: usize> Ellipsoid<N> {
         self.radius_at(x) <= 1.0
     }
 
-    /// The support value: the largest direction·x over the ellipsoid, direction·c + |diag(a)·R·direction|. The direction
-    /// need not be of unit length. Sums are in twice the precision, so that the value is right to a few roundings however
-    /// thin the ellipsoid is.
+    /// The support value: the largest direction·x over the ellipsoid, direction·c + |diag(a)·R·direction|. The
+    /// direction need not be of unit length. Sums are in twice the precision, so that the value is right to a few
+    /// roundings however thin the ellipsoid is.
     #[must_use]
     pub fn support_value(&self, direction: impl Into<[f64; N]>) -> f64 {
         support_value(&self.center, self.axes.as_flattened(), &self.semi_axes, &direction.into())

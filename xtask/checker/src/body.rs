@@ -46,8 +46,8 @@ impl Set {
 
 impl Set {
     /// A bound on the sizes of the numbers that computing a point of the set in floating point comes by, each of which
-    /// rounding takes its share of: the sum of those of every map on the way. In a pose far away and back again these are
-    /// far larger than the set, and in a chain of poses they are many.
+    /// rounding takes its share of: the sum of those of every map on the way. In a pose far away and back again these
+    /// are far larger than the set, and in a chain of poses they are many.
     pub(crate) fn magnitude(&self) -> Interval {
         let [size, before] = self.sizes();
         &size + &before

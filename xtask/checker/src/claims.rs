@@ -1,9 +1,9 @@
 //! What the fields of an answer claim, and by what each claim is checked.
 //!
-//! The tables [`claims`], and those of [`path`], [`joint_box`] and [`crate::clearance`], name every field that an answer may have. An answer is proved if each of
-//! its fields is: one that is not in the table, or that no certificate proves, leaves the answer without a proof, and is
-//! named. So does a field of the question that is not read ([`crate::question::EVERY`], and the shapes of the
-//! [`crate::reader`]).
+//! The tables [`claims`], and those of [`path`], [`joint_box`] and [`crate::clearance`], name every field that an
+//! answer may have. An answer is proved if each of its fields is: one that is not in the table, or that no certificate
+//! proves, leaves the answer without a proof, and is named. So does a field of the question that is not read
+//! ([`crate::question::EVERY`], and the shapes of the [`crate::reader`]).
 
 use serde_json::Value;
 
@@ -486,7 +486,8 @@ fn status(case: &Case<'_>, value: &Value) -> Finding {
     } else if question.kind.is_cast() || is_growth {
         let until = if is_growth { one.over(&claimed.lower) } else { claimed.upper.absolute() };
         let size = question.magnitude(&until);
-        // Along the plane's normal, in lengths. Where the ray grazes what is curved, rounding moves the hit by its root.
+        // Along the plane's normal, in lengths. Where the ray grazes what is curved, rounding moves the hit by its
+        // root.
         let approach = case.plane.as_ref().and_then(Vector::unit).map(|n| n.dot(&question.direction).absolute());
         let width = &width * &approach.unwrap_or_else(|| question.direction.length());
         (width, &(&(&size + &size) * &case.slack).root() + &(&question.tolerance * &size))

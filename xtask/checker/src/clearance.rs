@@ -1,8 +1,8 @@
 //! What a least distance over a motion claims, or over a path, and by what each claim is checked.
 //!
 //! That nothing comes nearer than the lower bound is proved by the parts of a certificate, as that a path is free with
-//! this target distance. The upper bound is proved at the claimed time, by points of both bodies. If the bodies meet, the
-//! distance is zero, and the time is that of their first contact: the certificate has a bracket for it, up to the
+//! this target distance. The upper bound is proved at the claimed time, by points of both bodies. If the bodies meet,
+//! the distance is zero, and the time is that of their first contact: the certificate has a bracket for it, up to the
 //! beginning of which the parts prove that nothing meets, and at the end of which points prove that these two do.
 
 use serde_json::Value;
@@ -76,16 +76,17 @@ impl<'t> Nearest<'t> {
         self.upper.is_zero()
     }
 
-    /// Whether the plane across the claimed normal keeps the bodies as far apart as the lower bound at the claimed time:
-    /// if there is no other time, that is a proof.
+    /// Whether the plane across the claimed normal keeps the bodies as far apart as the lower bound at the claimed
+    /// time: if there is no other time, that is a proof.
     pub(crate) fn is_by_its_normal(&self, (body, met): &(Body, Obstacle)) -> bool {
         let normal = self.answer.get("normal").and_then(|normal| self.reader.vector(normal).ok()?.unit());
         let apart = normal.and_then(|normal| met.separation(body, &normal, self.reader));
         apart.is_some_and(|apart| self.lower.is_at_most(&apart))
     }
 
-    /// Takes what is proved: whether nothing is nearer than the lower bound; of a contact its bracket, and how far apart
-    /// the bodies are at the end of that; and what rounding may change, and that and what the bracket leaves open.
+    /// Takes what is proved: whether nothing is nearer than the lower bound; of a contact its bracket, and how far
+    /// apart the bodies are at the end of that; and what rounding may change, and that and what the bracket leaves
+    /// open.
     pub(crate) fn prove(
         &mut self,
         (body, met): (Body, Obstacle),

@@ -77,8 +77,8 @@ pub(crate) fn normal(case: &Case<'_>, value: &Value) -> Finding {
     within_rounding(holds, "the plane across it does not prove the lower bound")
 }
 
-/// A point that both bodies have in common at the scale, to rounding, and to what the bracket leaves open: by so much it
-/// may be off along the line, and across curved bodies by the root of that.
+/// A point that both bodies have in common at the scale, to rounding, and to what the bracket leaves open: by so much
+/// it may be off along the line, and across curved bodies by the root of that.
 pub(crate) fn point(case: &Case<'_>, value: &Value) -> Finding {
     let (claimed, question, scale) = (case.claimed()?, &case.question, case.value()?);
     let point = case.reader.vector(value)?;

@@ -22,8 +22,8 @@ pub(crate) trait Moving {
     /// The normal that counts: of a half-space always its own.
     fn normal(&self, given: &Vector) -> Vector;
 
-    /// Whether a plane separates the bodies at all times: one that turns from one normal to the other, at a constant rate,
-    /// or one of the two alone.
+    /// Whether a plane separates the bodies at all times: one that turns from one normal to the other, at a constant
+    /// rate, or one of the two alone.
     fn are_apart(&self, times: [f64; 2], normals: [&Vector; 2]) -> bool {
         let [first, second] = normals.map(|normal| self.normal(normal));
         let planes = [[&first, &second], [&second, &second], [&first, &first]];
@@ -38,8 +38,8 @@ pub(crate) trait Moving {
     /// Whether one does that turns from one normal to the other, where it separates them by these gaps at the ends.
     ///
     /// For points `a` and `b` of the bodies `φ(t) = n(t)·(a(t) − b)` has the second derivative `2ṅ·ȧ + n·ä ≤ M`, so
-    /// that it is above its chord less `M·t·(s − t)/2`, and the radii take no more than the chord of theirs, as `|n|` is
-    /// convex. With `m = s²·M/2` that is positive for all times if `m < g₀ + g₁ + 2·√(g₀·g₁)`.
+    /// that it is above its chord less `M·t·(s − t)/2`, and the radii take no more than the chord of theirs, as `|n|`
+    /// is convex. With `m = s²·M/2` that is positive for all times if `m < g₀ + g₁ + 2·√(g₀·g₁)`.
     fn stay_apart(&self, [from, to]: [f64; 2], normals: &[Vector; 2], gaps: &[Interval; 2], halvings: u32) -> bool {
         let zero = Interval::zero();
         if !gaps.iter().all(|gap| zero.is_less_than(gap)) {

@@ -123,8 +123,8 @@ fn combination(simplex: &[Found]) -> Option<(Coordinates, [f64; 5])> {
     best.map(|(_, rest, weights)| (rest, weights))
 }
 
-/// The point nearest to zero in the affine hull of up to four points, and their weights, by orthogonal edges; none where
-/// the points are more than the dimension of their hull.
+/// The point nearest to zero in the affine hull of up to four points, and their weights, by orthogonal edges; none
+/// where the points are more than the dimension of their hull.
 fn affine(points: &[Coordinates]) -> Option<(Vec<f64>, Coordinates)> {
     let (first, others) = points.split_first()?;
     if others.len() > 3 {

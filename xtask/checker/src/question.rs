@@ -2,8 +2,8 @@
 //!
 //! All is about a set `C`, the target of a ray or `A − B ⊕ B(target distance)`, and the points `x(λ) = source +
 //! λ·direction` from the beginning of the ray on; for `distance` and `intersect`, whose `x` is zero, the direction is
-//! zero too. (Of `growth_distance` the last λ counts: [`crate::growth`].) A plane across `n` has `C` behind it, `n·y ≤ h(n)`: that bounds distance, or the first λ with `x(λ)` in `C`,
-//! from below. Points of `C` bound it from above.
+//! zero too. (Of `growth_distance` the last λ counts: [`crate::growth`].) A plane across `n` has `C` behind it, `n·y ≤
+//! h(n)`: that bounds distance, or the first λ with `x(λ)` in `C`, from below. Points of `C` bound it from above.
 
 use serde_json::Value;
 

@@ -115,8 +115,8 @@ fn shapes_reach_as_far_as_their_formulas_say() {
     }
 }
 
-/// The bound on the distance of a point from a body is no less than the distance, and not much more, on surfaces and off
-/// them.
+/// The bound on the distance of a point from a body is no less than the distance, and not much more, on surfaces and
+/// off them.
 #[test]
 fn distances_of_points_from_bodies_are_bounded() {
     let mesh = |path: &str| Err(format!("no mesh is expected, and none is at {path}"));

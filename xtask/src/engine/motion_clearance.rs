@@ -76,8 +76,8 @@ impl<V: Space> Question for Pair<V> {
 }
 
 impl<V: Space> Pair<V> {
-    /// What proves a least distance: the intervals of a cast to its lower bound, and points of the bodies at its time; of
-    /// a contact the bracket of its time, and points at the end of that.
+    /// What proves a least distance: the intervals of a cast to its lower bound, and points of the bodies at its time;
+    /// of a contact the bracket of its time, and points at the end of that.
     fn certificate_of(&self, least: &gjk_raycast::MotionClearance<V>) -> Result<Option<Answer>, Problem> {
         if !least.upper.as_f64().is_finite() {
             return Ok(None);

@@ -309,8 +309,8 @@ impl<V: Space> One<V> {
     }
 }
 
-/// The first hit of a cast, if there is one, and whether that is certain; `scalar` gives its λ or time, which the format
-/// calls `name`.
+/// The first hit of a cast, if there is one, and whether that is certain; `scalar` gives its λ or time, which the
+/// format calls `name`.
 fn first<V: Space, H>(
     scene: &gjk_raycast::Scene<Solid<V>>,
     name: &'static str,

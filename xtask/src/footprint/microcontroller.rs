@@ -206,7 +206,8 @@ fn counts(line: &str) -> Option<[u64; 2]> {
     Some([ticks, to - from])
 }
 
-/// How much of the memory is behind the longest stretch that is as it was painted: that is what the stack never reached.
+/// How much of the memory is behind the longest stretch that is as it was painted: that is what the stack never
+/// reached.
 fn stack_in(memory: &[u8]) -> usize {
     let (mut run, mut longest) = (0, (0, memory.len() / 4));
     for (at, word) in memory.chunks_exact(4).enumerate() {

@@ -84,7 +84,7 @@ impl Drawing {
             if !motion.is_rest() && !outline.is_empty() {
                 let until = time.unwrap_or_else(|| motion.end(case, size(outline)));
                 let moved: Vec<Flat> = outline.iter().map(|x| motion.at(until, *x, &view)).collect();
-                let steps = if length(motion.turning) > 0.0 { 16 } else { 1 };
+                let steps = if motion.turning.length() > 0.0 { 16 } else { 1 };
                 let way = |k: i32| motion.at(until * f64::from(k) / f64::from(steps), middle(outline), &view);
                 parts.push((Role::Way, (0..=steps).map(way).collect()));
                 seen.extend(outline.iter().chain(&moved));
@@ -96,8 +96,8 @@ impl Drawing {
             let hit = answer.get("lambda").and_then(Value::as_f64);
             // A miss is drawn as far as the target, and half as far again; from inside of it, the ray is drawn there.
             let far = if hit.is_some() { 0.4 * size(&other) } else { 1.5 * size(&[middle(&other), view.flat(source)]) };
-            let far = far / length(direction).max(f64::MIN_POSITIVE);
-            let end = add(source, direction, hit.filter(|x| *x > 0.0).unwrap_or(far));
+            let far = far / direction.length().max(f64::MIN_POSITIVE);
+            let end = source + direction * hit.filter(|x| *x > 0.0).unwrap_or(far);
             parts.push((Role::Way, vec![view.flat(source), view.flat(end)]));
             seen.extend([view.flat(source), view.flat(end)]);
         }
@@ -131,7 +131,7 @@ impl Drawing {
         let is_flat = center.as_array().is_some_and(|x| x.len() == 2);
         let shape = json!({"type": "ellipsoid", "center": center, "matrix": answer.get("matrix")});
         let space = Dimension::default();
-        let view = if is_flat { View::PLANE } else { View::along([0.36, 0.48, 0.8]) };
+        let view = if is_flat { View::PLANE } else { View::along(DVec3::new(0.36, 0.48, 0.8)) };
         let body = shape.as_object().map(|o| Body::read(Written::new(o, &space))).transpose()?;
         let ellipsoid = body.map_or(Ok(Vec::new()), |body| view.outline(&body, is_flat, 1.0))?;
         let lists = |key: &str| case.get(key).and_then(Value::as_array).cloned().unwrap_or_default();
@@ -141,7 +141,7 @@ impl Drawing {
         for half_space in &lists("halfspaces") {
             let normal = half_space.get("normal").and_then(coordinates).unwrap_or_default();
             let offset = half_space.get("offset").and_then(Value::as_f64).unwrap_or_default();
-            polygon = cut(&polygon, [normal[0], normal[1]], offset);
+            polygon = cut(&polygon, normal.truncate().to_array(), offset);
         }
         let around = if cloud.is_empty() { (Role::Other, polygon) } else { (Role::Cloud, cloud) };
         let seen: Vec<Flat> = ellipsoid.iter().chain(&around.1).copied().collect();
@@ -160,42 +160,42 @@ impl Drawing {
 /// From which side a pose is seen: the directions to the right, up, and towards who looks.
 #[derive(Clone, Copy, Debug)]
 struct View {
-    right: [f64; 3],
-    up: [f64; 3],
-    towards: [f64; 3],
+    right: DVec3,
+    up: DVec3,
+    towards: DVec3,
 }
 
 impl View {
-    const PLANE: Self = Self { right: [1.0, 0.0, 0.0], up: [0.0, 1.0, 0.0], towards: [0.0, 0.0, 1.0] };
+    const PLANE: Self = Self { right: DVec3::X, up: DVec3::Y, towards: DVec3::Z };
 
     /// A view in which the ray, the way, or the normal is seen in its true length, and a turn as a turn.
     fn new(is_flat: bool, case: &Object, answer: &Object, motions: &[Motion; 2]) -> Self {
         if is_flat {
             return Self::PLANE;
         }
-        if let Some(turning) = motions.iter().find(|motion| length(motion.turning) > 0.0) {
+        if let Some(turning) = motions.iter().find(|motion| motion.turning.length() > 0.0) {
             return Self::along(turning.turning);
         }
-        let between = || Some(add(vector(answer, "point_a")?, vector(answer, "point_b")?, -1.0));
-        let moving = motions.iter().map(|motion| motion.velocity).find(|v| length(*v) > 0.0);
+        let between = || Some(vector(answer, "point_a")? - vector(answer, "point_b")?);
+        let moving = motions.iter().map(|motion| motion.velocity).find(|v| v.length() > 0.0);
         let key = vector(case, "direction").or(moving).or_else(|| vector(answer, "normal")).or_else(between);
         let key = unit(key.unwrap_or_default());
         // Along the axis most nearly perpendicular to it, z before x before y.
         let axis = [2, 0, 1].into_iter().min_by(|i, j| round(key[*i]).total_cmp(&round(key[*j]))).unwrap_or(2);
-        let axis = std::array::from_fn(|i| f64::from(i == axis));
-        Self::along(add(axis, key, -dot(axis, key)))
+        let axis = DVec3::AXES[axis];
+        Self::along(axis - key * axis.dot(key))
     }
 
     /// The view along a direction, with y upwards, or z where one looks along y.
-    fn along(direction: [f64; 3]) -> Self {
+    fn along(direction: DVec3) -> Self {
         let towards = unit(direction);
-        let vertical = if towards[1].abs() < 0.9 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
-        let up = unit(add(vertical, towards, -dot(vertical, towards)));
-        Self { right: cross(up, towards), up, towards }
+        let vertical = if towards.y.abs() < 0.9 { DVec3::Y } else { DVec3::Z };
+        let up = unit(vertical - towards * vertical.dot(towards));
+        Self { right: up.cross(towards), up, towards }
     }
 
-    fn flat(&self, x: [f64; 3]) -> Flat {
-        [dot(self.right, x), dot(self.up, x)]
+    fn flat(&self, x: DVec3) -> Flat {
+        [self.right.dot(x), self.up.dot(x)]
     }
 
     /// The outline of a body: its support points in directions all around. Of a half-space, as far as `reach`.
@@ -210,7 +210,7 @@ impl View {
         };
         let asked = |k: usize| {
             let angle = std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
-            let direction = add(scaled(self.right, angle.cos()), self.up, angle.sin());
+            let direction = self.right * angle.cos() + self.up * angle.sin();
             self.flat(from(solid.support(V::from_fn(|i| direction[i]))))
         };
         let mut outline: Vec<Flat> = (0..DIRECTIONS).map(asked).collect();
@@ -222,7 +222,7 @@ impl View {
     /// What a half-space covers beside the point of its plane that is nearest to the origin.
     fn floor<V: Vector<Scalar = f64>>(&self, half_space: &HalfSpace<V>, reach: f64) -> Vec<Flat> {
         let normal = from(half_space.normal());
-        let at = self.flat(scaled(normal, half_space.offset() / dot(normal, normal)));
+        let at = self.flat(normal * (half_space.offset() / normal.dot(normal)));
         let n = self.flat(unit(normal));
         [(-reach, 0.0), (reach, 0.0), (reach, -reach), (-reach, -reach)]
             .map(|(t, d)| [at[0] - t * n[1] + d * n[0], at[1] + t * n[0] + d * n[1]])
@@ -233,9 +233,9 @@ impl View {
 /// How a body moves.
 #[derive(Clone, Copy, Debug, Default)]
 struct Motion {
-    velocity: [f64; 3],
-    turning: [f64; 3],
-    center: [f64; 3],
+    velocity: DVec3,
+    turning: DVec3,
+    center: DVec3,
 }
 
 impl Motion {
@@ -246,24 +246,24 @@ impl Motion {
         };
         let of = |key: &str| vector(motion, key).unwrap_or_default();
         let rate = motion.get("angular_velocity").and_then(Value::as_f64);
-        let turning = rate.map_or_else(|| of("angular_velocity"), |rate| [0.0, 0.0, rate]);
+        let turning = rate.map_or_else(|| of("angular_velocity"), |rate| DVec3::Z * rate);
         Self { velocity: of("velocity"), turning, center: of("center") }
     }
 
     fn is_rest(&self) -> bool {
-        length(self.velocity) == 0.0 && length(self.turning) == 0.0
+        self.velocity.length() == 0.0 && self.turning.length() == 0.0
     }
 
     /// Until when a way without a hit is drawn, for a body of this size.
     fn end(&self, case: &Object, size: f64) -> f64 {
         let given = case.get("max_time").and_then(Value::as_f64).unwrap_or(f64::INFINITY);
-        given.min(2.0 * size / length(self.velocity).max(f64::MIN_POSITIVE))
+        given.min(2.0 * size / self.velocity.length().max(f64::MIN_POSITIVE))
     }
 
     /// Where a point of the outline is at a time. One looks along the axis of a turn, so that it is one of the plane.
     fn at(&self, time: f64, x: Flat, view: &View) -> Flat {
         let (center, velocity) = (view.flat(self.center), view.flat(self.velocity));
-        let (sin, cos) = (dot(self.turning, view.towards) * time).sin_cos();
+        let (sin, cos) = (self.turning.dot(view.towards) * time).sin_cos();
         let [r, u] = [x[0] - center[0], x[1] - center[1]];
         [center[0] + velocity[0] * time + cos * r - sin * u, center[1] + velocity[1] * time + sin * r + cos * u]
     }
@@ -306,46 +306,25 @@ fn size(points: &[Flat]) -> f64 {
     (high[0] - low[0]).hypot(high[1] - low[1])
 }
 
-fn from<V: Vector<Scalar = f64>>(x: V) -> [f64; 3] {
-    std::array::from_fn(|i| if i < V::DIM { x.get(i) } else { 0.0 })
+fn from<V: Vector<Scalar = f64>>(x: V) -> DVec3 {
+    DVec3::from_fn(|i| if i < V::DIM { x.get(i) } else { 0.0 })
 }
 
 fn numbers<'o>(object: &'o Object, key: &str) -> Option<&'o Vec<Value>> {
     object.get(key)?.as_array()
 }
 
-fn vector(object: &Object, key: &str) -> Option<[f64; 3]> {
+fn vector(object: &Object, key: &str) -> Option<DVec3> {
     coordinates(object.get(key)?)
 }
 
-fn coordinates(value: &Value) -> Option<[f64; 3]> {
+fn coordinates(value: &Value) -> Option<DVec3> {
     let list = value.as_array()?;
-    Some(std::array::from_fn(|i| list.get(i).and_then(Value::as_f64).unwrap_or_default()))
+    Some(DVec3::from_fn(|i| list.get(i).and_then(Value::as_f64).unwrap_or_default()))
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn length(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
-}
-
-fn scaled(a: [f64; 3], by: f64) -> [f64; 3] {
-    a.map(|x| by * x)
-}
-
-fn unit(a: [f64; 3]) -> [f64; 3] {
-    scaled(a, 1.0 / length(a).max(f64::MIN_POSITIVE))
-}
-
-/// `a + t·b`.
-fn add(a: [f64; 3], b: [f64; 3], t: f64) -> [f64; 3] {
-    std::array::from_fn(|i| a[i] + t * b[i])
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+fn unit(a: DVec3) -> DVec3 {
+    a * (1.0 / a.length().max(f64::MIN_POSITIVE))
 }
 
 /// The size of a coordinate, without what rounding makes of equal ones.

@@ -337,9 +337,9 @@ fn a_plane_that_leans_proves_no_bracket() {
     }
 }
 
-/// All parts of random paths and boxes of joint values are proved, and they cover all that is free; with a part less, or
-/// one whose plane faces the other way, they do not. What is met is proved to be, and not with fewer points, nor at a
-/// time or place before.
+/// All parts of random paths and boxes of joint values are proved, and they cover all that is free; with a part less,
+/// or one whose plane faces the other way, they do not. What is met is proved to be, and not with fewer points, nor at
+/// a time or place before.
 #[test]
 fn what_robots_are_free_of_and_what_they_meet_is_proved() {
     let (mut rng, mut free, mut met, mut parts) = (Rng::new(44), 0, 0, 0);
@@ -513,8 +513,8 @@ fn the_embedded_clearances_are_proved() {
     }
 }
 
-/// Nearly all of random ones, of every kind in both precisions; and not with one thing changed such that it proves nothing
-/// any more, or claims what is false.
+/// Nearly all of random ones, of every kind in both precisions; and not with one thing changed such that it proves
+/// nothing any more, or claims what is false.
 #[test]
 fn random_clearances_are_proved_and_none_that_is_spoilt() {
     let mut rng = Rng::new(7);

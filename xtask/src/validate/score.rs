@@ -265,7 +265,8 @@ fn text(value: Option<&Value>) -> String {
     value.map_or_else(|| "missing".to_owned(), Value::to_string)
 }
 
-/// All numbers of a value, in order, and of its fields in that of their names; a flag is 0 or 1, and what else is no number becomes NaN.
+/// All numbers of a value, in order, and of its fields in that of their names; a flag is 0 or 1, and what else is no
+/// number becomes NaN.
 fn numbers(value: &Value) -> Vec<f64> {
     match value {
         Value::Array(items) => items.iter().flat_map(numbers).collect(),

@@ -191,8 +191,8 @@ impl EllipsoidSpec {
         self.made::<V::Wide>().and_then(round).map_err(|why| Problem::invalid_shape(place, why))
     }
 
-    /// The ellipsoid as a body, made of the numbers of the query in their precision, so that it states the errors of its
-    /// axes.
+    /// The ellipsoid as a body, made of the numbers of the query in their precision, so that it states the errors of
+    /// its axes.
     fn solid<V: Space>(&self, place: &str) -> Result<Ellipsoid<V>, Problem> {
         match &self.form {
             EllipsoidForm::Matrix(_) => self.build(place),

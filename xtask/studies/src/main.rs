@@ -35,7 +35,8 @@ enum Task {
     ///
     /// Exit status: 0, or 1 if an answer differs from the given truth, or 2 if a file could not be read.
     Scene(scene::Choice),
-    /// Ask whether the pairs of links that a robot's planner does not look at ever meet, within the limits of its joints.
+    /// Ask whether the pairs of links that a robot's planner does not look at ever meet, within the limits of its
+    /// joints.
     ///
     /// Exit status: 0, or 2 if a file could not be read or written.
     Matrix(matrix::Choice),

@@ -1,8 +1,8 @@
 //! `cargo xtask matrix ROBOT.urdf ROBOT.srdf`: whether the pairs of links that planners do not look at ever meet.
 //!
-//! Such a matrix is drawn from random poses, mostly ten thousand of them. Here each of its pairs is asked about all joint
-//! values within the limits: it is proved that the hulls of the two links never meet, or a pose is found in which they
-//! do, or it is said how much of the box of joint values is open.
+//! Such a matrix is drawn from random poses, mostly ten thousand of them. Here each of its pairs is asked about all
+//! joint values within the limits: it is proved that the hulls of the two links never meet, or a pose is found in which
+//! they do, or it is said how much of the box of joint values is open.
 
 use std::fs;
 use std::io::{self, Write};

@@ -1,7 +1,8 @@
-//! parry's answers to seeded questions, a line each, every field of them: what `.ci/bits` compares between targets, beside ours.
+//! parry's answers to seeded questions, a line each, every field of them: what `.ci/bits` compares between targets,
+//! beside ours.
 //!
-//! 10,000 distances, contacts, ray casts, linear casts and turning casts of balls, boxes, capsules, cylinders, cones and
-//! hulls of twelve points, in single precision. Poses are drawn with `+ − × ÷ √` only.
+//! 10,000 distances, contacts, ray casts, linear casts and turning casts of balls, boxes, capsules, cylinders, cones
+//! and hulls of twelve points, in single precision. Poses are drawn with `+ − × ÷ √` only.
 #![allow(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is the purpose")]
 
 use std::io::{self, BufWriter, Write};

@@ -259,8 +259,8 @@ impl<V: Vector> Bound<V> for BoxDistance<V> {
     }
 }
 
-/// A [`BoxDistance`] in the frame of a tree: the bounds are the squares of distances, and the radius of the ball and all
-/// rounding are in the limit.
+/// A [`BoxDistance`] in the frame of a tree: the bounds are the squares of distances, and the radius of the ball and
+/// all rounding are in the limit.
 #[derive(Clone, Copy, Debug)]
 pub struct CoarseBoxDistance<V> {
     /// For each coordinate, the smallest and the largest.

@@ -1,4 +1,4 @@
-//! The point of a cone nearest a given point.
+//! The point of a cone nearest a given point: in the half plane through the axis, where the cone is a triangle.
 
 use num_traits::Float as _;
 

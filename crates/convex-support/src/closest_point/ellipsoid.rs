@@ -1,4 +1,4 @@
-//! The point of an ellipsoid nearest a given point.
+//! The point of an ellipsoid nearest a given point, by Newton's method on the secular equation.
 
 use num_traits::Float as _;
 

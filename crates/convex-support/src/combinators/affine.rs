@@ -273,8 +273,8 @@ impl<S: CrossedByLine> CrossedByLine for Affine<S> {
     }
 }
 
-/// Conjugate radii of the section of the image of the unit ball that is seen along a direction; the second is nearly zero
-/// if the image is a segment, or seen from its edge.
+/// Conjugate radii of the section of the image of the unit ball that is seen along a direction; the second is nearly
+/// zero if the image is a segment, or seen from its edge.
 ///
 /// With unit vectors `e` and `f` across the direction, the outline of the image `{Mu : |u| ≤ 1}` is that of all points
 /// `(Mᵀe·u, Mᵀf·u)`. They are farthest out where `u` is in the plane of `Mᵀe` and `Mᵀf`, and so the images of two unit

@@ -134,8 +134,8 @@ impl<S: SupportMap> Posed<S> {
 
     /// Another shape in the pose of this one: the numbers are those that the same constructor would make for it.
     ///
-    /// The pose was checked and made a matrix once, which is a sixth of the work of the distance of a ball and a box. So
-    /// where several shapes share a pose, or one is asked about again, keep the pose as that of a
+    /// The pose was checked and made a matrix once, which is a sixth of the work of the distance of a ball and a box.
+    /// So where several shapes share a pose, or one is asked about again, keep the pose as that of a
     /// [`Point`](crate::Point), and give it to each shape:
     ///
     /// ```

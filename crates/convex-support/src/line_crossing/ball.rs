@@ -1,4 +1,4 @@
-//! Balls, and points swept by a ball.
+//! Where a line is in a ball, or in a point swept by one: about its place nearest the centre.
 
 use num_traits::Float as _;
 

@@ -1,4 +1,4 @@
-//! Capsules, and segments swept by a ball.
+//! Where a line is in a capsule: in the tube around its segment, or in the ball at an end of it.
 
 use num_traits::Float as _;
 

@@ -1,4 +1,4 @@
-//! Cones.
+//! Where a line is in a cone: in its slab, and on the side of the axis of a quadratic about the apex.
 
 use num_traits::Float as _;
 

@@ -1,4 +1,4 @@
-//! Boxes.
+//! Where a line is in a box: in all of its slabs at once.
 
 use num_traits::Float as _;
 

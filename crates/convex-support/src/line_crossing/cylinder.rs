@@ -1,4 +1,4 @@
-//! Cylinders.
+//! Where a line is in a cylinder: in its slab, and in the circle that is seen along the axis.
 
 use num_traits::Float as _;
 

@@ -1,4 +1,4 @@
-//! Ellipsoids.
+//! Where a line is in an ellipsoid: in the unit ball, in the coordinates that make it one.
 
 use super::ball::ball;
 use super::{Crossed, Crossing};

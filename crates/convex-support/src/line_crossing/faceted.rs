@@ -1,4 +1,4 @@
-//! Hulls with facets.
+//! Where a line is in a hull of known facets: behind all of their planes.
 
 use core::array::from_fn;
 

@@ -1,4 +1,4 @@
-//! Boxes swept by a ball.
+//! Where a line is in a box swept by a ball: no farther from the box, by a distance that is quadratic in parts.
 
 use num_traits::Float as _;
 

@@ -1,4 +1,4 @@
-//! Triangles, flat and swept by a ball.
+//! Where a line is in a triangle, flat or swept by a ball: in a prism over it, or in the tubes around its edges.
 
 use num_traits::Float as _;
 

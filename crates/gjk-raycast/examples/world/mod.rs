@@ -1,5 +1,5 @@
-//! A small world of convex bodies: contacts from `gjk_raycast::Scene`, answered by sequential impulses (Catto, *Iterative
-//! dynamics with temporal coherence*, 2005). Mass is 1 for every body that moves.
+//! A small world of convex bodies: contacts from `gjk_raycast::Scene`, answered by sequential impulses (Catto,
+//! *Iterative dynamics with temporal coherence*, 2005). Mass is 1 for every body that moves.
 
 #![allow(dead_code, reason = "each example uses a part of it")]
 

@@ -25,8 +25,8 @@ const LARGEST_TOLERANCE: f64 = 16.0;
 /// digits.
 const LEANS: f64 = 1.0 / 64.0;
 
-/// The reciprocal of a cosine up to which both bounds of a closed bracket, which are errors of 1, 1.5 and a noise times as
-/// far from where they should be, are no farther apart than [`NARROW`].
+/// The reciprocal of a cosine up to which both bounds of a closed bracket, which are errors of 1, 1.5 and a noise times
+/// as far from where they should be, are no farther apart than [`NARROW`].
 const STEEP_SPREAD: f64 = 8.0;
 
 /// How far rounding moves the points that a search compares, in units of ε times the size.
@@ -651,8 +651,8 @@ mod tests {
         .expect("neither plane is before the ray");
     }
 
-    /// Rays into the face x = −1, less and less squarely. The point that they hit, their direction and λ have few bits, so
-    /// that the source has as well, and this λ is that of the first point in the cube exactly.
+    /// Rays into the face x = −1, less and less squarely. The point that they hit, their direction and λ have few bits,
+    /// so that the source has as well, and this λ is that of the first point in the cube exactly.
     #[test]
     fn bounds_widen_with_the_slant_of_a_crossing_and_hold_it() {
         for i in 0..80 {
@@ -689,8 +689,8 @@ mod tests {
         }
     }
 
-    /// Such a plane would be crossed at x = 2⁹⁰⁸, where the cube has no points, and rounding leaves open where: it is no
-    /// bound.
+    /// Such a plane would be crossed at x = 2⁹⁰⁸, where the cube has no points, and rounding leaves open where: it is
+    /// no bound.
     #[test]
     fn a_plane_along_the_ray_is_crossed_within_the_ball_about_the_body() {
         let n = DVec3::new(-(2.0_f64.powi(-960)), 1.0, 0.0);

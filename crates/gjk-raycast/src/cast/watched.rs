@@ -1,10 +1,10 @@
 //! The bracket that an observer of a cast is shown.
 //!
-//! A search records its bounds only where it uses them: a portal has neither before it is about to close. An observer is
-//! to see the bracket narrow from the first support point on. So for an observer every support point counts at once. The
-//! body is behind the plane that supports it there, which the line crosses no later than the body. The point itself is
-//! of the body, and where the line runs through the triangle of three such points (in the plane: between two), it is in
-//! the body. Nothing of this is computed without an observer, and no search depends on it.
+//! A search records its bounds only where it uses them: a portal has neither before it is about to close. An observer
+//! is to see the bracket narrow from the first support point on. So for an observer every support point counts at once.
+//! The body is behind the plane that supports it there, which the line crosses no later than the body. The point itself
+//! is of the body, and where the line runs through the triangle of three such points (in the plane: between two), it is
+//! in the body. Nothing of this is computed without an observer, and no search depends on it.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -44,8 +44,8 @@ impl<V: Vector> Watched<V> {
         Self(Box::new(ShownBracket { line, axes, points: Vec::new(), corners: 0, lower: -unknown, upper: unknown }))
     }
 
-    /// Both bounds, by those of the search and all support points so far, of which the last is the one of the core along
-    /// `n`.
+    /// Both bounds, by those of the search and all support points so far, of which the last is the one of the core
+    /// along `n`.
     pub(super) fn narrow(&mut self, [low, high]: [V::Scalar; 2], n: V, core: V, radius: V::Scalar) -> [V::Scalar; 2] {
         self.0.count(n, core, radius);
         self.0.narrow(low, high).into()

@@ -1,4 +1,4 @@
-//! Where two outlines overlap.
+//! Where two outlines overlap: the one is cut along each edge of the other (Sutherland and Hodgman).
 
 use convex_support::Scalar;
 use smallvec::SmallVec;
@@ -110,7 +110,8 @@ pub(crate) fn cut<S: Scalar>(
     lists.swap(0, 1);
 }
 
-/// The corner between two edges of an outline, and whether there is one: other edges may meet on their way to be cut off.
+/// The corner between two edges of an outline, and whether there is one: other edges may meet on their way to be cut
+/// off.
 fn corner_between<S: Scalar>(before: usize, after: usize, corners: &[Corner<S>]) -> (Corner<S>, bool) {
     let follows = |i: usize, j: usize| (i + 1) % corners.len() == j;
     let is_next = follows(before, after);

@@ -1,4 +1,5 @@
-//! The points at which two shapes in contact support each other.
+//! The points at which two shapes in contact support each other: the corners of the overlap of their features, each
+//! measured against both shapes. Where a vertex touches, or edges cross, the closest points alone.
 
 use convex_support::{CoreKind, Scalar, ScalarOf, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;

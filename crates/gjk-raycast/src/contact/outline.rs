@@ -1,4 +1,4 @@
-//! The outlines of features in the plane of contact.
+//! The outlines of features in the plane of contact, and the part of a shape that each corner is on.
 
 use core::cmp::Ordering;
 

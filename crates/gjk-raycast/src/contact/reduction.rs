@@ -1,4 +1,4 @@
-//! Which corners of an overlap are kept.
+//! Which corners of an overlap are kept: four that span it well, those of the last contact before others.
 
 use convex_support::Scalar;
 use smallvec::SmallVec;

@@ -171,8 +171,8 @@ impl<V: Vector> GrowthDistance<V> {
     /// query; `None` if there is no normal.
     ///
     /// They are those of the shapes as they are, with `b` moved along the way between the centres until they touch: the
-    /// scale times as large, both lie as the grown shapes do. Their [smoothness](ClosestFeatures::smoothness) is that of
-    /// the scale, and [`refined`](Self::refined) by them the answer has an accurate [gradient](Self::gradient).
+    /// scale times as large, both lie as the grown shapes do. Their [smoothness](ClosestFeatures::smoothness) is that
+    /// of the scale, and [`refined`](Self::refined) by them the answer has an accurate [gradient](Self::gradient).
     #[must_use]
     pub fn closest_features(
         &self,

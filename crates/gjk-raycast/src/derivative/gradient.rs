@@ -141,9 +141,9 @@ impl<V: Vector> GrowthDistance<V> {
     ///
     /// With `n` the normal, `d = b − a` the way between the centres and `h` the support value of the difference of both
     /// shapes, each relative to its centre, along `−n`, the scale is `s = −n·d/h`, and stationary in `n`. A shape that
-    /// moves by `u` without its centre changes `h` by `−n·u` at a point `x` of its surface, and the centre alone changes
-    /// both `h` and `d`. Together they are a force at `a + s(x − a)`, the point that both have in common: the bodies
-    /// close in there, per unit of the scale, at the speed `−n·d/s = h`.
+    /// moves by `u` without its centre changes `h` by `−n·u` at a point `x` of its surface, and the centre alone
+    /// changes both `h` and `d`. Together they are a force at `a + s(x − a)`, the point that both have in common: the
+    /// bodies close in there, per unit of the scale, at the speed `−n·d/s = h`.
     ///
     /// If the grown shapes touch in one point and with one normal they are derivatives, otherwise one-sided;
     /// [`closest_features`](Self::closest_features) tells which. They are as accurate as the normal and the point of

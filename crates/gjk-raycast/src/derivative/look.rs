@@ -278,8 +278,8 @@ impl<V: Vector> Bodies<'_, V> {
             }
             let shifts = [0, 1].map(|i| (step.points[i] - best.points[i]).length());
             best.points = step.points;
-            // The distance of the search is right to its tolerance only. If the step changes it by no more than rounding,
-            // it is right already.
+            // The distance of the search is right to its tolerance only. If the step changes it by no more than
+            // rounding, it is right already.
             let error = (step.signed_distance - best.signed_distance).abs();
             if error > rounding() {
                 best.signed_distance = step.signed_distance;

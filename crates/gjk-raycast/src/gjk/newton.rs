@@ -1,5 +1,5 @@
-//! The next direction of GJK for curved bodies. For polytopes, whose support points do not move with the plane, there is
-//! nothing to predict.
+//! The next direction of GJK for curved bodies. For polytopes, whose support points do not move with the plane, there
+//! is nothing to predict.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;

@@ -10,8 +10,8 @@ use super::planes::{dot, length, minus, numbers};
 use super::{Law, Numbers, Report};
 use crate::{Cast, Impact, Outcome, Status};
 
-/// How far apart or deep the bodies may be within a converged bracket, in units of ε times the size and the way, plus the
-/// errors.
+/// How far apart or deep the bodies may be within a converged bracket, in units of ε times the size and the way, plus
+/// the errors.
 const WIDTH_OF_CASTS: f64 = 1024.0;
 
 /// How far a plane may be from where it should be, in the same unit.

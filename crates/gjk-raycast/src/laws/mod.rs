@@ -1,5 +1,5 @@
-//! What an answer says of itself, as laws for any shapes; with the feature `laws`, and as property tests with the feature
-//! `proptest`.
+//! What an answer says of itself, as laws for any shapes; with the feature `laws`, and as property tests with the
+//! feature `proptest`.
 //!
 //! Each function asks a question several times, with other options, methods, starts and orders of the bodies, and
 //! holds every claim of every answer against the others and against planes. [`Law`] lists the claims. The planes are

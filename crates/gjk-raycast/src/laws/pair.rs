@@ -12,7 +12,8 @@ use crate::{
     signed_distance,
 };
 
-/// The width of a converged bracket, in errors of a bound: 8ε of the sizes and the offset, and the errors of the shapes.
+/// The width of a converged bracket, in errors of a bound: 8ε of the sizes and the offset, and the errors of the
+/// shapes.
 const WIDTH_OF_DISTANCES: f64 = 6.0;
 
 /// The error of points and of planes, in the same unit, in which their places count too.

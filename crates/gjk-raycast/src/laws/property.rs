@@ -11,8 +11,8 @@ use proptest::test_runner::TestRunner;
 use super::{Report, contact, linear_cast, motion_cast, pair, ray};
 use crate::{LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastOptions, RigidMotion, StartInContact};
 
-/// Checks every law for pairs of the shapes of a strategy, whose size is one: apart, nearly in contact, and overlapping;
-/// for rays at them, and for their motions.
+/// Checks every law for pairs of the shapes of a strategy, whose size is one: apart, nearly in contact, and
+/// overlapping; for rays at them, and for their motions.
 ///
 /// The draws are those of [`config`](convex_support::laws::config): the same in every run.
 ///

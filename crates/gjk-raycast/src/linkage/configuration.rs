@@ -1,9 +1,9 @@
 //! A linkage at one configuration: where its joints are, whether it is free, how near it comes, and which joint helps.
 //!
 //! Each link's frame is found once, by the joints from the world on, and each body of a link is then asked about the
-//! scene as any placed shape is. A body only has to be looked at as far as it may be nearer than the nearest so far. The
-//! frames carry bounds on their rounding, by which the bounds of a distance are widened: they hold for the linkage that
-//! the given numbers define.
+//! scene as any placed shape is. A body only has to be looked at as far as it may be nearer than the nearest so far.
+//! The frames carry bounds on their rounding, by which the bounds of a distance are widened: they hold for the linkage
+//! that the given numbers define.
 
 use alloc::vec::Vec;
 
@@ -140,8 +140,8 @@ impl<S: SupportMap> Linkage<S> {
     /// [pairs](Self::with_pairs) from one another. `None` if none is within the
     /// [limit](SignedDistanceOptions::limit) of the options, as where there are no other bodies.
     ///
-    /// Each distance is that of [`placed`](Self::placed) bodies by [`signed_distance`](crate::signed_distance()), to the
-    /// last bit. The bounds of the answer also account for the rounding of the poses.
+    /// Each distance is that of [`placed`](Self::placed) bodies by [`signed_distance`](crate::signed_distance()), to
+    /// the last bit. The bounds of the answer also account for the rounding of the poses.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, Rounded, Segment, glam::DVec3};
@@ -213,8 +213,8 @@ impl<S: SupportMap> Linkage<S> {
     /// points, and is not as near elsewhere; otherwise one-sided. They are as accurate as the normal and the points.
     ///
     /// # Errors
-    /// [`LinkageError`] if the values or the derivatives are not as many as there are [values](Self::values), a value is
-    /// not finite, or the answer names a link that is not there.
+    /// [`LinkageError`] if the values or the derivatives are not as many as there are [values](Self::values), a value
+    /// is not finite, or the answer names a link that is not there.
     pub fn clearance_gradient(
         &self,
         values: &[ScalarOf<S>],

@@ -1,15 +1,15 @@
 //! A free box of joint values that is grown around a configuration.
 //!
 //! The box is grown in two steps. First all joints grow together: each interval is the same part of that from the
-//! joint's value to its limits, and the part is doubled as long as the box is proved to be free. Then each face is moved
-//! by itself, all in turn, and only the slab that it adds has to be proved: what a face has gained it keeps. A step that
-//! succeeds is doubled for the next turn, and one that does not is halved, until it is shorter than a small part of the
-//! limits. What kept the shortest step from succeeding is what stopped the face.
+//! joint's value to its limits, and the part is doubled as long as the box is proved to be free. Then each face is
+//! moved by itself, all in turn, and only the slab that it adds has to be proved: what a face has gained it keeps. A
+//! step that succeeds is doubled for the next turn, and one that does not is halved, until it is shorter than a small
+//! part of the limits. What kept the shortest step from succeeding is what stopped the face.
 //!
 //! Each proof is that of [`joint_box`](super::joint_box), one plane for each pair of bodies. Each pair has a box of its
-//! own, in which it is known to be free: it contains the common box, and is larger if one plane proves more. Most bodies
-//! are far from most obstacles, so that a face is moved within the boxes of most pairs, which are not looked at again.
-//! The pair that was in the way last is tried first.
+//! own, in which it is known to be free: it contains the common box, and is larger if one plane proves more. Most
+//! bodies are far from most obstacles, so that a face is moved within the boxes of most pairs, which are not looked at
+//! again. The pair that was in the way last is tried first.
 
 use alloc::vec::Vec;
 
@@ -35,8 +35,8 @@ const AHEAD: f64 = 4.0;
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct GrownBox<S> {
-    /// The interval of each joint value. At all values in the box all bodies are farther apart than the target distance.
-    /// This is a proof.
+    /// The interval of each joint value. At all values in the box all bodies are farther apart than the target
+    /// distance. This is a proof.
     pub joint_box: Vec<[S; 2]>,
     /// What stopped both ends of each interval.
     pub stops: Vec<[FaceStop<S>; 2]>,
@@ -62,14 +62,15 @@ pub enum FaceStop<S> {
 }
 
 impl<S: SupportMap> Linkage<S> {
-    /// A box of joint values around a configuration, within limits, that is proved to be free: nowhere in it is a body of
-    /// a link as near as the target distance to a body of the scene, nor those of the [pairs](Self::with_pairs) to one
-    /// another. It is as large as the search can make it: [`joint_box_among`](Self::joint_box_among) proves a box that is
-    /// given, and this finds one.
+    /// A box of joint values around a configuration, within limits, that is proved to be free: nowhere in it is a body
+    /// of a link as near as the target distance to a body of the scene, nor those of the [pairs](Self::with_pairs) to
+    /// one another. It is as large as the search can make it: [`joint_box_among`](Self::joint_box_among) proves a box
+    /// that is given, and this finds one.
     ///
     /// All joints grow together, by factors of two, and then each end of each interval by itself, in turn, until one
-    /// plane no more proves a sixteenth of its way more, or a 256th of the limits. So it is not the largest box that there
-    /// is. The search ends after `max_boxes` parts of boxes; an arm of 59 balls at a shelf takes up to twenty thousand.
+    /// plane no more proves a sixteenth of its way more, or a 256th of the limits. So it is not the largest box that
+    /// there is. The search ends after `max_boxes` parts of boxes; an arm of 59 balls at a shelf takes up to twenty
+    /// thousand.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, Rounded, Segment, glam::DVec2};
@@ -151,8 +152,8 @@ impl<S: SupportMap, O: SupportMap<Vector = S::Vector>> Growth<'_, S, O> {
         self.values.iter().zip(self.limits).map(interval).collect()
     }
 
-    /// Finds for each pair the part of the limits within which one plane proves it to be free, and returns the least. It
-    /// is zero where only the values themselves are known to be free.
+    /// Finds for each pair the part of the limits within which one plane proves it to be free, and returns the least.
+    /// It is zero where only the values themselves are known to be free.
     fn begin(&mut self) -> Result<ScalarOf<S>, LinkageError> {
         let (number, one) = (ScalarOf::<S>::from_f64, ScalarOf::<S>::ONE);
         let pairs: Vec<_> = self.among.pairs().collect();

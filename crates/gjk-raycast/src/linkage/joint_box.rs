@@ -143,9 +143,9 @@ impl<S: SupportMap> Linkage<S> {
     }
 
     /// Whether any body of a link is ever as near as the target distance to a body of a scene at rest, or those of the
-    /// [pairs](Self::with_pairs) to one another, where each joint value may be anywhere in an interval. It is one search
-    /// for all of them, as that of [`joint_box`](Self::joint_box): it gives up after `max_boxes` parts of the box,
-    /// counted for each two bodies, but looks at least once at each two.
+    /// [pairs](Self::with_pairs) to one another, where each joint value may be anywhere in an interval. It is one
+    /// search for all of them, as that of [`joint_box`](Self::joint_box): it gives up after `max_boxes` parts of the
+    /// box, counted for each two bodies, but looks at least once at each two.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, Rounded, Segment, glam::DVec2};

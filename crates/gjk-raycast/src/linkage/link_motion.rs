@@ -173,12 +173,12 @@ impl<V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> Trajectory for Li
     /// > n·ẍ ≤ n·c̈(e) + |n|·(j·(e − t) + ρ·b),   r·ẋ ≤ r·ċ(e) + |r|·(a·(e − t) + ρ·w),
     ///
     /// where `a` and `j` bound the acceleration and the jerk of the centre, `w` bounds the angular velocity `ω`, and
-    /// `b` bounds `|ω′| + |ω|²` in the interval. At its end `ω` and `ω′` are known. In between, with `α` and `β` for the
-    /// sums of the bounds on the accelerations and jerks of the joint values, `ω` changes by no more than `w² + α` per
-    /// unit of time, and `ω′` by no more than `w³ + 2w·α + β`: `ω` is the sum of `q′·u` for the unit axes `u`, each of
-    /// which turns with the joints before it, `u′ = ω₀ × u` and `u″ = ω₀′ × u + ω₀ × u′`, so that `ω′` is a sum of `q″`
-    /// and products of the rates of two joints, and `ω″` one of `q‴`, at most two products of the rate of one joint and
-    /// the acceleration of another for each such pair, and products of three rates.
+    /// `b` bounds `|ω′| + |ω|²` in the interval. At its end `ω` and `ω′` are known. In between, with `α` and `β` for
+    /// the sums of the bounds on the accelerations and jerks of the joint values, `ω` changes by no more than `w² + α`
+    /// per unit of time, and `ω′` by no more than `w³ + 2w·α + β`: `ω` is the sum of `q′·u` for the unit axes `u`, each
+    /// of which turns with the joints before it, `u′ = ω₀ × u` and `u″ = ω₀′ × u + ω₀ × u′`, so that `ω′` is a sum of
+    /// `q″` and products of the rates of two joints, and `ω″` one of `q‴`, at most two products of the rate of one
+    /// joint and the acceleration of another for each such pair, and products of three rates.
     fn acceleration_along(
         &self,
         ball: BoundingSphere<V>,

@@ -1,4 +1,5 @@
-//! Whether a linkage touches anything along a path.
+//! Whether a linkage touches anything along a path: the bodies that come near along an edge ([`sweep`](super::sweep))
+//! are cast against one another, as far as the first contact so far.
 
 use convex_support::{Core, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
@@ -287,8 +288,8 @@ impl<S: SupportMap> Linkage<S> {
         if !cast.is_certain() && to - from < whole {
             cast = cast_to(whole)?;
         }
-        // Where the joints' values leave less than half of the digits of the pose, that the bodies seem to touch, within
-        // rounding, says nothing.
+        // Where the joints' values leave less than half of the digits of the pose, that the bodies seem to touch,
+        // within rounding, says nothing.
         if let Outcome::Hit(hit) = cast.outcome
             && !cast.is_certain()
         {

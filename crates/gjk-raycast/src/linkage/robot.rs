@@ -181,7 +181,8 @@ impl<S: SupportMap> Linkage<S> {
     }
 
     /// Whether each joint that moves carries a link. The value of one that does not changes no answer; mostly the index
-    /// of a parent, or of the joint of a link, is wrong. A fixed joint may carry nothing, and a link may have no bodies.
+    /// of a parent, or of the joint of a link, is wrong. A fixed joint may carry nothing, and a link may have no
+    /// bodies.
     ///
     /// # Errors
     /// [`LinkageError::CarriesNothing`] for the first joint that carries no link.

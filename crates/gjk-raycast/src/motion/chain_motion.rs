@@ -166,8 +166,8 @@ impl<S: Scalar> Linear<S> {
 ///
 /// > R′ = q′·A·R,   R″ = (q″·A + q′²·A²)·R,   R‴ = (q‴·A + 3q′·q″·A² + q′³·A³)·R.
 ///
-/// `A` makes nothing longer. So if `w`, `α` and `β` bound `|q′|`, `|q″|` and `|q‴|`, these take `y` to vectors no longer
-/// than `w₁·l`, `w₂·l` and `w₃·l`, where `l` is the distance of `y` from the axis, and
+/// `A` makes nothing longer. So if `w`, `α` and `β` bound `|q′|`, `|q″|` and `|q‴|`, these take `y` to vectors no
+/// longer than `w₁·l`, `w₂·l` and `w₃·l`, where `l` is the distance of `y` from the axis, and
 ///
 /// > w₁ = w,   w₂ = w² + α,   w₃ = w³ + 3w·α + β.
 ///

@@ -1,4 +1,5 @@
-//! The least distance of two bodies that move and turn.
+//! The least distance of two bodies that move and turn: the question and its answer; the search is
+//! [`least`](super::least).
 
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
@@ -43,9 +44,9 @@ const MAX_LOOKS_FOR_LEAST: usize = 100_000;
 /// has a bracket.
 ///
 /// A minimum takes about fifteen times examined, of which the search for it takes about ten and the proof about five.
-/// Around a time at which the distance is about the least, the shortest proved interval is as long as the fourth root of
-/// the [tolerance](MotionClearanceOptions::tolerance) if both motions are [rigid](crate::RigidMotion), and as its square
-/// root for other motions and over half-spaces.
+/// Around a time at which the distance is about the least, the shortest proved interval is as long as the fourth root
+/// of the [tolerance](MotionClearanceOptions::tolerance) if both motions are [rigid](crate::RigidMotion), and as its
+/// square root for other motions and over half-spaces.
 ///
 /// # Errors
 /// [`RayCastError::NonFinite`] if a number of a [`RigidMotion`](crate::RigidMotion) is not finite, the
@@ -298,8 +299,8 @@ impl<V: Vector> MotionClearance<V> {
         }
     }
 
-    /// The answer that the bodies' distance at a time is the least, with a lower bound for all times, or none if there is
-    /// no other time. The first guess of the normal at that time may be given.
+    /// The answer that the bodies' distance at a time is the least, with a lower bound for all times, or none if there
+    /// is no other time. The first guess of the normal at that time may be given.
     fn at(
         bodies: &dyn Approach<V>,
         (time, axis): (V::Scalar, Option<V>),

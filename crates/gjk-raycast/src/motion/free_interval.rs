@@ -39,8 +39,8 @@ use super::trajectory::TurningPlane;
 const ROUNDING: f64 = 64.0;
 
 /// Whether the signed distance of the bodies certainly stays above a level between two times at which it does so by the
-/// given gaps. At level 0 this means that they are apart. The answer is the bound `M` along the plane that turns from the
-/// one normal to the other, whichever plane is the proof; `None` if there is none.
+/// given gaps. At level 0 this means that they are apart. The answer is the bound `M` along the plane that turns from
+/// the one normal to the other, whichever plane is the proof; `None` if there is none.
 pub(super) fn acceleration_if_free<V: Vector>(
     bodies: &dyn Approach<V>,
     from: &Instant<V>,

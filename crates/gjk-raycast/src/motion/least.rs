@@ -377,8 +377,8 @@ fn divide<V: Vector>([from, to]: [&Instant<V>; 2], gaps: [V::Scalar; 2], refuted
 }
 
 /// A time between two at which the distance falls and rises: the minimum of the cubic by the last two instants, or
-/// where the secant of the speeds at both ends is zero; or if these make no progress, where the tangents cross, as for a
-/// kink, or the middle.
+/// where the secant of the speeds at both ends is zero; or if these make no progress, where the tangents cross, as for
+/// a kink, or the middle.
 fn between<V: Vector>(low: &Instant<V>, high: &Instant<V>, last: &[Instant<V>; 2], slow: u8) -> V::Scalar {
     let is_inside = |time: &V::Scalar| *time > low.time && *time < high.time;
     let width = high.time - low.time;

@@ -1,4 +1,4 @@
-//! A body and its motion.
+//! A body and its motion: where it is at a time, and a bound on how its points accelerate in between.
 
 use convex_support::{AngularVelocity, BoundingSphere, Core, CoreKind, Matrix, Parallelotope, Scalar, Spin, Vector};
 use num_traits::Float;
@@ -13,7 +13,8 @@ use convex_support::numerics::coordinates::{LEAST, Vec3, array, cross, dot, vect
 /// If the cosine of the angle between two edges is more than this, a parallelotope does not count as a box.
 const NOT_A_BOX: f64 = 1e-6;
 
-/// The thickness of a rectangle in units of its shorter edge: less than rounding, but enough for its normal to be known.
+/// The thickness of a rectangle in units of its shorter edge: less than rounding, but enough for its normal to be
+/// known.
 const THICKNESS: f64 = 1.0 / (1_u64 << 60) as f64;
 
 /// A body and its motion.
@@ -161,8 +162,8 @@ impl<'s, V: Vector> MovingBody<'s, V> {
         BoundingSphere { center: self.core.origin, radius: self.core.extent }
     }
 
-    /// The core at time 0 relative to its origin, if it is a box without a radius, times a power of two. In space it may
-    /// be a rectangle.
+    /// The core at time 0 relative to its origin, if it is a box without a radius, times a power of two. In space it
+    /// may be a rectangle.
     pub(super) fn as_box(&self, per_unit: V::Scalar) -> Option<Parallelotope<V>> {
         let Self { shape, core, .. } = self;
         if !matches!(core.kind, CoreKind::Polytope) || core.radius > Scalar::ZERO {

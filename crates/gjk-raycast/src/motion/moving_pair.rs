@@ -2,8 +2,8 @@
 //! their contact leaves out.
 //!
 //! A look at one time begins in [`at`](Approach::at), with the closed forms for [closest points](super::near_look) and
-//! for [boxes](super::box_look). If neither tells enough, it goes on with GJK, which well apart is all, and near contact
-//! with the closest points of the last look, or at last with the signed distance.
+//! for [boxes](super::box_look). If neither tells enough, it goes on with GJK, which well apart is all, and near
+//! contact with the closest points of the last look, or at last with the signed distance.
 
 use core::cell::{Cell, RefCell};
 

@@ -50,9 +50,10 @@ impl<V: Vector> Search<'_, V> {
 
     /// The time to look at between [`near`](Self::near) and a time at which the bodies are not certainly apart, given
     /// the time `next` to which Newton's method leads from `near`. Newton's method from the end of the interval that is
-    /// nearer to contact comes first. If its time is outside the interval, the time of the secant comes next; if neither
-    /// method makes progress, or a distance is not known, the middle. The answer is `None` if the bodies move in between
-    /// by no more than rounding: that may happen at the start, where their places are exact, while later places are not.
+    /// nearer to contact comes first. If its time is outside the interval, the time of the secant comes next; if
+    /// neither method makes progress, or a distance is not known, the middle. The answer is `None` if the bodies move
+    /// in between by no more than rounding: that may happen at the start, where their places are exact, while later
+    /// places are not.
     fn between(&self, next: V::Scalar, beyond: &Instant<V>) -> Option<V::Scalar> {
         let Instant { time, distance, error, .. } = self.near;
         let aim = error * Scalar::from_f64(AIM);

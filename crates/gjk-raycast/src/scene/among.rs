@@ -75,8 +75,8 @@ impl<S: SupportMap> Scene<S> {
     }
 
     /// Questions about the bodies for whose index `picked` returns true, such as those of a layer or a group: this is
-    /// the filter, the query mask and the collision group of other libraries. If the layers of each body are the bits of
-    /// a number in a list of yours, `|body| layers[body] & mask != 0` picks those of a mask.
+    /// the filter, the query mask and the collision group of other libraries. If the layers of each body are the bits
+    /// of a number in a list of yours, `|body| layers[body] & mask != 0` picks those of a mask.
     #[must_use]
     #[doc(alias("filter", "layer", "mask", "group", "predicate", "query_filter"))]
     pub fn among<'s>(&'s self, picked: &'s (dyn Fn(usize) -> bool + Sync + 's)) -> Among<'s, S> {

@@ -61,8 +61,8 @@ pub(super) enum Member<'m, V: Vector> {
     Instance(&'m Instance<V>),
 }
 
-/// A scene that can be a body of other scenes, as often as wanted: each [instance](crate::Scene::insert_group) has its own
-/// pose, and all share one tree. A clone is the same group.
+/// A scene that can be a body of other scenes, as often as wanted: each [instance](crate::Scene::insert_group) has its
+/// own pose, and all share one tree. A clone is the same group.
 ///
 /// ```
 /// use convex_support::{Cuboid, Posed, glam::{DQuat, DVec3}};
@@ -212,13 +212,13 @@ impl<V: Vector> Instance<V> {
         None
     }
 
-    /// Calls `visit` for the members that may be within `limit`, with the number of the member, its bound and the member
-    /// with its box, until the call breaks off; it returns the limit from then on. `from` is the bound of the instance.
-    /// Returns the last limit, and counts the nodes that were tested.
+    /// Calls `visit` for the members that may be within `limit`, with the number of the member, its bound and the
+    /// member with its box, until the call breaks off; it returns the limit from then on. `from` is the bound of the
+    /// instance. Returns the last limit, and counts the nodes that were tested.
     ///
     /// The bound of a member is the greatest of that of its box in the world and those of its box, and of the instances
-    /// that it is in, as each frame sees them. So it does not depend on the limit, and the order, by which other members
-    /// were left out.
+    /// that it is in, as each frame sees them. So it does not depend on the limit, and the order, by which other
+    /// members were left out.
     pub(super) fn search<Q: Question<V>>(
         &self,
         question: &Q,
@@ -270,8 +270,8 @@ impl<V: Vector> Instance<V> {
         if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(limit) }
     }
 
-    /// Calls `visit` for the members that a shape may meet within the options' time, as for [`search`](Self::search), or
-    /// for all members without a motion.
+    /// Calls `visit` for the members that a shape may meet within the options' time, as for [`search`](Self::search),
+    /// or for all members without a motion.
     pub(crate) fn each_on_way<A: SupportMap<Vector = V> + ?Sized, E>(
         &self,
         shape: &A,

@@ -7,8 +7,9 @@ use super::answers::SceneRayCast;
 use crate::{Ray, RayCastError, RayCastOptions};
 
 impl<V: Vector3> Scene<Triangle<V>> {
-    /// The first triangle that the ray hits from its [front](Self::is_front): backs are passed through, as by a renderer
-    /// that culls them. [`Triangle::barycentric`] and [`Triangle::feature_at`] say where on the triangle the hit is.
+    /// The first triangle that the ray hits from its [front](Self::is_front): backs are passed through, as by a
+    /// renderer that culls them. [`Triangle::barycentric`] and [`Triangle::feature_at`] say where on the triangle the
+    /// hit is.
     ///
     /// ```
     /// use convex_support::{TriangleFeature, glam::DVec3};

@@ -169,7 +169,8 @@ impl<S: SupportMap> Among<'_, S> {
     }
 }
 
-/// How far boxes are from that of a shape's core, swept by its ball; nowhere, of a shape of which a number is not finite.
+/// How far boxes are from that of a shape's core, swept by its ball; nowhere, of a shape of which a number is not
+/// finite.
 pub(super) fn distance_of<A: SupportMap + ?Sized>(shape: &A) -> BoxDistance<A::Vector> {
     BoxDistance::of_shape(shape).unwrap_or_else(|| BoxDistance::new(Aabb::everything()))
 }

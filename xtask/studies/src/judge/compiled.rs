@@ -97,7 +97,8 @@ impl Library {
         Some(Reply::Answer { claim, ns })
     }
 
-    /// The question, as often as it takes to be timed; and the end of its ray or motion, which is one to these functions.
+    /// The question, as often as it takes to be timed; and the end of its ray or motion, which is one to these
+    /// functions.
     fn solver(&self, question: &Question) -> Option<(Solver, f64)> {
         let Question { set, object, .. } = question;
         if set.starts_with("suite") {

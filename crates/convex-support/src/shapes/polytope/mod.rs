@@ -115,8 +115,8 @@ impl<V: Vector> Polytope<V> {
         Ok(Self { points, search, middle, extent: measurable("points", extent)?, rounding })
     }
 
-    /// The polytope from the points of another one, by which it was [searched by edges](Self::has_edges) or not. Without
-    /// the feature `hull` its points are scanned.
+    /// The polytope from the points of another one, by which it was [searched by edges](Self::has_edges) or not.
+    /// Without the feature `hull` its points are scanned.
     #[cfg(feature = "serde")]
     pub(crate) fn restored(points: Vec<V>, has_edges: bool) -> Result<Self, InvalidShape> {
         #[cfg(feature = "hull")]

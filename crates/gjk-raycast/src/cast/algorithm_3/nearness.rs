@@ -1,16 +1,16 @@
-//! Whether the ray is near the body throughout its bracket, as a converged answer says, and a later lower bound where it
-//! is not.
+//! Whether the ray is near the body throughout its bracket, as a converged answer says, and a later lower bound where
+//! it is not.
 //!
 //! How far apart the bounds are across the last plane tells how deep the ray is between them. It does not tell how far
 //! the ray is from the body: at an edge another plane may have the lower bound far before it, and behind the edge the
 //! ray may have left the body by the upper bound. So where the bounds are farther apart than a converged answer leaves
-//! open, points of the body near both of them are looked for, by steps of GJK from the point that is known. The distance
-//! from the body is convex along the ray, and so no larger in between. A plane found on the way, with the lower bound
-//! before it, moves that.
+//! open, points of the body near both of them are looked for, by steps of GJK from the point that is known. The
+//! distance from the body is convex along the ray, and so no larger in between. A plane found on the way, with the
+//! lower bound before it, moves that.
 //!
-//! Along a face, or a curved surface, one look is enough. If the normal there is tilted by an angle `θ` towards the point
-//! of the ray, the support point along it is the face's corner on that side, or on a surface of radius `R` a point `Rθ`
-//! away. The chord to it is within `Rθ²/8` of the surface, so that `θ` is the root of what may be left open.
+//! Along a face, or a curved surface, one look is enough. If the normal there is tilted by an angle `θ` towards the
+//! point of the ray, the support point along it is the face's corner on that side, or on a surface of radius `R` a
+//! point `Rθ` away. The chord to it is within `Rθ²/8` of the surface, so that `θ` is the root of what may be left open.
 
 use convex_support::Vector;
 use num_traits::Float as _;

@@ -463,8 +463,8 @@ mod tests {
         }
     }
 
-    /// Rays beside the octahedron, but within the ball about it: the plane has all corners behind it, and the ray before
-    /// it.
+    /// Rays beside the octahedron, but within the ball about it: the plane has all corners behind it, and the ray
+    /// before it.
     #[test]
     fn a_ray_beside_the_body_ends_at_a_plane_that_separates() {
         for (y, z) in [(0.5, 0.75), (-0.625, 0.5), (0.5, 0.53125), (0.75, -0.625)] {

@@ -1,4 +1,4 @@
-//! The boundary of a polytope that grows point by point.
+//! The boundary of a polytope that grows point by point: its facets, their planes, and which is nearest to zero.
 
 use alloc::boxed::Box;
 #[cfg(feature = "std")]

@@ -1,4 +1,5 @@
-//! The expanding polytope: the shortest way out of the difference of two cores.
+//! The expanding polytope: the shortest way out of the difference of two cores. The facet nearest to zero bounds the
+//! way from below, the support point beyond it from above and is added, until both meet.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;

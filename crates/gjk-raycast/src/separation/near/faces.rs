@@ -22,8 +22,9 @@ impl<V: Vector> ProjectedFace<V> {
         Self { at: points.map(|p| (e.dot(p), f.dot(p))), heights: points.map(|p| n.dot(p)) }
     }
 
-    /// Whether zero is within the projection, and stays there as long as no projected corner moves farther than `moved`:
-    /// to let zero out by a side, the ends of that side would have to come towards it by at least its distance.
+    /// Whether zero is within the projection, and stays there as long as no projected corner moves farther than
+    /// `moved`: to let zero out by a side, the ends of that side would have to come towards it by at least its
+    /// distance.
     #[inline]
     pub(crate) fn surrounds_zero(&self, moved: V::Scalar) -> bool {
         let at = &self.at;
@@ -31,8 +32,9 @@ impl<V: Vector> ProjectedFace<V> {
             let (p, q) = (at[0].0, at[1].0);
             return p.min(q) < -moved && p.max(q) > moved;
         }
-        // The product of the distance and the side, and what it has to exceed: the same for `moved`, with a bound on the
-        // side, and the rounding of the product, which counts for sides that are short beside the corners' distance.
+        // The product of the distance and the side, and what it has to exceed: the same for `moved`, with a bound on
+        // the side, and the rounding of the product, which counts for sides that are short beside the corners'
+        // distance.
         let sides = [[0, 1], [1, 2], [2, 0]].map(|[i, j]| {
             let (p, q, (x, y)) = (at[i], at[j], way(at[i], at[j]));
             let rounded = V::Scalar::EPSILON * V::Scalar::from_f64(4.0) * ((p.0 * q.1).abs() + (p.1 * q.0).abs());

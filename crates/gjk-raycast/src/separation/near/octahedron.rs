@@ -1,9 +1,9 @@
 //! An octahedron, in the plane a square, of points of the difference of two bodies that lie around zero.
 //!
-//! Its corners are the points of the difference nearest to places aside of zero, along three axes and both ways. It is in
-//! the difference with all of its inside, so that zero meets both bodies where it has [room](super::room) there. Under a
-//! plane across an axis the corner is at the plane; beside an edge or an apex, too, the corners that would be outside
-//! are on the boundary. If the bodies are well apart or well in one another, a search from zero itself tells.
+//! Its corners are the points of the difference nearest to places aside of zero, along three axes and both ways. It is
+//! in the difference with all of its inside, so that zero meets both bodies where it has [room](super::room) there.
+//! Under a plane across an axis the corner is at the plane; beside an edge or an apex, too, the corners that would be
+//! outside are on the boundary. If the bodies are well apart or well in one another, a search from zero itself tells.
 
 use core::array;
 
@@ -17,8 +17,8 @@ pub(super) struct Octahedron<V>([[V; 2]; 3]);
 
 impl<V: Vector> Octahedron<V> {
     /// The octahedron of the places `aside` from zero along the axes and against them, of bodies with a radius around
-    /// their cores; `nearest` finds the point of the difference of the cores that is nearest to a place. `None` if there
-    /// is none for one of them.
+    /// their cores; `nearest` finds the point of the difference of the cores that is nearest to a place. `None` if
+    /// there is none for one of them.
     pub(super) fn around_zero<E>(
         axes: [V; 3],
         aside: V::Scalar,
@@ -46,8 +46,8 @@ impl<V: Vector> Octahedron<V> {
         self.0.iter().flatten().fold(least, |most, corner| num_traits::Float::max(most, corner.abs().max_element()))
     }
 
-    /// How many times a set about zero [fits into it](room_around_zero), given the error of its corners and the reach of
-    /// the set along a unit vector.
+    /// How many times a set about zero [fits into it](room_around_zero), given the error of its corners and the reach
+    /// of the set along a unit vector.
     pub(super) fn room(&self, error: impl Fn(V) -> V::Scalar, reach: impl Fn(V) -> V::Scalar) -> V::Scalar {
         room_around_zero(faces_between(&self.0), error, reach)
     }
