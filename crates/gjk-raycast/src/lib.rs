@@ -151,14 +151,14 @@ mod body;
 mod boxes;
 mod cast;
 #[cfg(feature = "alloc")]
-mod certificate;
+pub mod certificate;
 #[cfg(feature = "alloc")]
 mod contact;
 mod curvature;
 #[cfg(feature = "serde")]
 mod data;
 #[cfg(feature = "alloc")]
-mod derivative;
+pub mod derivative;
 mod distance;
 mod gjk;
 #[cfg(feature = "alloc")]
@@ -172,9 +172,9 @@ pub mod laws;
 #[cfg(feature = "alloc")]
 mod linear_cast;
 #[cfg(feature = "alloc")]
-mod linkage;
+pub mod linkage;
 #[cfg(feature = "alloc")]
-mod motion;
+pub mod motion;
 mod observer;
 mod options;
 mod outcome;
@@ -188,7 +188,7 @@ mod ray_cast;
 mod ray_casts;
 mod ray_exit;
 #[cfg(feature = "alloc")]
-mod scene;
+pub mod scene;
 mod segments;
 mod separation;
 #[cfg(feature = "alloc")]
@@ -200,10 +200,13 @@ mod symmetric;
 mod unit;
 mod warm_start;
 
+// What the public modules have is at the root as well, and shown in its module alone: the first page stays short.
+// `tests/names.rs` says that it is all here.
 pub use convex_support;
 pub use convex_support::{MotionGradient, MotionHessian};
 
 #[cfg(feature = "alloc")]
+#[doc(hidden)]
 pub use certificate::{
     Certificate, WeightedSupport, distance_certificate, growth_distance_certificate, intersection_certificate,
     linear_cast_certificate, ray_cast_certificate,
@@ -211,6 +214,7 @@ pub use certificate::{
 #[cfg(feature = "alloc")]
 pub use contact::{Contact, ContactPoint, contact, contact_after};
 #[cfg(feature = "alloc")]
+#[doc(hidden)]
 pub use derivative::{
     ClosestFeatures, ClosestVelocities, GrowthGradient, ImpactGradient, PairHessian, RayCastGradient,
     RigidMotionGradient, Smoothness,
@@ -225,12 +229,14 @@ pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 #[cfg(feature = "alloc")]
 pub use linear_cast::{LinearCast, LinearCastOptions, Motion, linear_cast, linear_cast_with};
 #[cfg(feature = "alloc")]
+#[doc(hidden)]
 pub use linkage::{
     BodyPair, ConfigurationWorkspace, FaceStop, FreeBox, FreeInterval, GrownBox, Joint, JointBounds, JointBox,
     JointBoxOutcome, JointKind, JointState, JointTrajectory, Link, LinkClearance, LinkFrame, Linkage, LinkageError,
     Met, NearestOnPath, Path, PathClearance, PathContact, PathWorkspace,
 };
 #[cfg(feature = "alloc")]
+#[doc(hidden)]
 pub use motion::{
     ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionClearance, MotionClearanceOptions, MotionIterate,
     MovingBall, Pose, RigidMotion, Trajectory, TurningPlane, motion_cast, motion_cast_with, motion_clearance,
@@ -247,14 +253,11 @@ pub use ray_casts::{RayEntry, ray_casts, ray_entries_into};
 pub use ray_casts::{par_ray_casts, par_ray_entries_into};
 pub use ray_exit::{RayExit, ray_exit};
 #[cfg(feature = "alloc")]
-pub use scene::among::Among;
-#[cfg(feature = "alloc")]
-pub use scene::handle::BodyHandle;
-#[cfg(feature = "alloc")]
+#[doc(hidden)]
 pub use scene::{
-    Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, Group, Instance, PairContact, PairDistance,
-    PairImpact, Scene, SceneAnyHit, SceneAnyWithin, SceneCast, SceneDistance, SceneError, SceneFirstContact, SceneHits,
-    SceneLinearCast, SceneMotionCast, ScenePair, SceneRayCast, SceneSignedDistance, Work,
+    Among, Body, BodyContact, BodyDistance, BodyHandle, BodyHit, BodySignedDistance, Group, Instance, PairContact,
+    PairDistance, PairImpact, Scene, SceneAnyHit, SceneAnyWithin, SceneCast, SceneDistance, SceneError,
+    SceneFirstContact, SceneHits, SceneLinearCast, SceneMotionCast, ScenePair, SceneRayCast, SceneSignedDistance, Work,
 };
 pub use separation::{Distance, SignedDistance, SignedDistanceOptions};
 #[cfg(feature = "alloc")]

@@ -43,6 +43,7 @@ mod motion_cast;
 mod motion_clearance;
 mod motion_laws;
 mod moving_boxes;
+mod names;
 mod options;
 mod paper;
 mod path_clearance;

@@ -107,7 +107,11 @@ const GJK_RAYCAST: Option<(&str, &str)> = Some(("gjk-raycast", "\"std\", \"f64\"
 const PROGRAMS: &[Program] = &[
     Program { name: "nothing", import: None, body: &["println!(\"{:?}\", input());"] },
     Program { name: "convex-support", import: Some(("convex-support", "\"std\", \"f64\"")), body: &[SUPPORT] },
-    Program { name: "convex-support, no `std`", import: Some(("convex-support", "\"f64\"")), body: &[SUPPORT] },
+    Program {
+        name: "convex-support, no `std`",
+        import: Some(("convex-support", "\"f64\", \"alloc\"")),
+        body: &[SUPPORT],
+    },
     Program {
         name: "convex-support, hull",
         import: Some(("convex-support", "\"std\", \"f64\", \"hull\"")),
@@ -135,6 +139,11 @@ const PROGRAMS: &[Program] = &[
     Program { name: "gjk-raycast, `motion_cast`, lean", import: GJK_RAYCAST, body: &[BOXES, LEAN_TURNING] },
     Program {
         name: "gjk-raycast, no `std`, `distance`",
+        import: Some(("gjk-raycast", "\"f64\", \"alloc\"")),
+        body: &[BOXES, DISTANCE],
+    },
+    Program {
+        name: "gjk-raycast, no `alloc`, `distance`",
         import: Some(("gjk-raycast", "\"f64\"")),
         body: &[BOXES, DISTANCE],
     },

@@ -12,9 +12,9 @@ use alloc::vec::Vec;
 use convex_support::glam::DVec3;
 use convex_support::{Core, Hint, Scalar, SupportMap, Vector};
 
-pub use self::points::WeightedSupport;
 use self::points::{Seen, points, wide};
 use crate::{Distance, GrowthDistance, Intersection, LinearCast, Motion, Outcome, Ray, RayCast};
+pub use points::WeightedSupport;
 
 /// The proof of a bracket: a plane for its lower end, support points for its upper end.
 ///

@@ -1,4 +1,7 @@
 //! Robots: bodies carried by joints, at one configuration, along a path, and anywhere in a box of joint values.
+//!
+//! A [`Linkage`] has [`Joint`]s and [`Link`]s, as a URDF file has, and answers all questions: is it free, how near does
+//! it come, which joint helps, is a path free at every time, do two links ever meet.
 
 mod configuration;
 mod error;

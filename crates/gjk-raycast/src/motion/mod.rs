@@ -1,4 +1,7 @@
-//! Motion: the first contact of bodies that turn, and motions of any kind.
+//! Motion: the first contact of bodies that turn, how near they come on the way, and motions of any kind.
+//!
+//! [`motion_cast`] and [`motion_clearance`] ask, along a [`RigidMotion`], a [`ChainMotion`] of joints, or a
+//! [`Trajectory`] of your own. For bodies that move straight [`linear_cast`](crate::linear_cast()) is quicker.
 
 mod bent_plane;
 mod box_look;

@@ -11,7 +11,8 @@ use convex_support::numerics::angular;
 /// The spin of the angular velocities of a space.
 pub(super) type SpinOf<V> = <<V as Vector>::AngularVelocity as AngularVelocity<V>>::Spin;
 
-/// The pose of a body: the body is turned about zero, then moved.
+/// The pose of a body: the body is turned about zero, then moved. The default leaves it where it is.
+#[doc(alias("isometry", "transform", "identity"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose<V: Vector> {

@@ -1,6 +1,10 @@
-//! Questions about many bodies, of which few need a query.
+//! Many bodies: the first on a ray or a way, the nearest, all that are near, pairs, manifolds; layers and instances.
+//!
+//! [`Scene`] has the bodies, and a tree of their boxes. Questions are methods of [`Among`], which [`Scene::all`] and
+//! [`Scene::among`] make. A [`Group`] is a scene that is a body of another one, as often as wanted. Answers are equal,
+//! to the last bit, to those of a loop over all bodies.
 
-pub(crate) mod among;
+mod among;
 mod answers;
 mod asked;
 mod body;
@@ -8,7 +12,7 @@ mod bounds;
 mod contacts;
 mod error;
 mod group;
-pub(crate) mod handle;
+mod handle;
 mod hits;
 mod instance;
 mod instance_frame;
@@ -25,14 +29,16 @@ use convex_support::{Aabb, Bvh, Posed, SupportMap, Triangle, Vector, Vector3, ou
 
 use crate::{HalfSpace, Pose};
 
-pub use self::answers::{
+pub use among::Among;
+pub use answers::{
     BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, PairImpact, SceneAnyHit,
     SceneAnyWithin, SceneCast, SceneDistance, SceneFirstContact, SceneHits, SceneLinearCast, SceneMotionCast,
     ScenePair, SceneRayCast, SceneSignedDistance, Work,
 };
-pub use self::body::Body;
-pub use self::error::SceneError;
-pub use self::instance::{Group, Instance};
+pub use body::Body;
+pub use error::SceneError;
+pub use handle::BodyHandle;
+pub use instance::{Group, Instance};
 
 /// A set of bodies with a tree of their boxes, for questions such as the first hit, the nearest body, or all near
 /// pairs.
@@ -85,13 +91,15 @@ pub use self::instance::{Group, Instance};
 /// body, and [`remove`](Self::remove) takes one out. The tree is adjusted each time, and is rebuilt when that is
 /// worth it.
 ///
-/// [`Among::first_contacts`](crate::Among::first_contacts) finds the pairs of bodies that meet while all of them move during a step, and when.
+/// [`Among::first_contacts`](crate::Among::first_contacts) finds the pairs of bodies that meet while all of them move
+/// during a step, and when.
 ///
 /// # Groups
 /// A compound or a mesh that moves as one is a scene of its own, made a [`Group`]. A body of this scene may be an
 /// [instance](Self::insert_group) of a group, with a pose; answers say which *member* of the body it was. The group may
 /// be of another kind of shapes, so that this is also how a mesh, hulls and shapes of your own come into one scene.
 ///
+/// # Layers
 /// [`among`](Self::among) restricts a question to the bodies that a closure picks, such as those of a layer, and
 /// [`Among::without_pairs`](crate::Among::without_pairs) leaves out pairs, such as those of neighbouring links.
 #[doc(alias("world", "broad_phase", "query_pipeline", "collision_world", "compound", "trimesh"))]
