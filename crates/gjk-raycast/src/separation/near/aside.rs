@@ -22,7 +22,8 @@ use crate::symmetric::axes_across;
 /// errors of room; one that is larger is cut more by the edges of the bodies.
 const OCTAHEDRON: f64 = 16.0;
 
-/// The noise of GJK from there, in that of the query: it is to find the faces of bodies thinner than the noise.
+/// The noise of GJK from there, in that of the query, but no more than the least error of points: it is to find the
+/// faces of bodies thinner than the noise, and the side of a needle whose length makes the noise what it is.
 const NOISE_ASIDE: f64 = 1.0 / 256.0;
 
 /// The most support points of one look. None of them has to end: any point of the difference will do as a corner, and
@@ -88,7 +89,8 @@ impl<V: Vector> Known<V> {
         }
         seen.ensure_measured();
         if seen.length > self.frame.noise {
-            let (offset, noise) = (self.frame.offset - place, self.frame.noise * Scalar::from_f64(NOISE_ASIDE));
+            let noise = (self.frame.noise * Scalar::from_f64(NOISE_ASIDE)).min(self.points.least());
+            let offset = self.frame.offset - place;
             let (frame, first) = (Frame { offset, noise, radius: Scalar::ZERO, ..self.frame }, seen.normal);
             run(&mut seen, pair, frame, first, max_iterations);
             seen.ensure_measured();
@@ -111,12 +113,22 @@ impl<V: Vector> Known<V> {
         let planes = [beside, state.axis].into_iter().chain(faces).chain(about.into_iter().flatten());
         let mut best: Option<SupportPlane<V>> = None;
         let mut least = near.lower.max(V::Scalar::ZERO) + self.frame.radius;
+        let planes = planes.flat_map(|n| [Some(n), self.without_noise(n)]).flatten();
         for n in planes {
             if let Some(plane) = self.plane(pair, n).filter(|plane| plane.is_beyond(least)) {
                 (least, best) = (plane.certain(), Some(plane));
             }
         }
         best
+    }
+
+    /// The vector without those of its coordinates that hold no more of the bodies' extents than the error of the query,
+    /// if there are any: rounding may have made them up, and they tilt a plane by all of that error. The normal of a
+    /// long box's side comes back exactly.
+    fn without_noise(&self, n: V) -> Option<V> {
+        let (extent, error) = (self.points.extent, self.frame.error * n.norm());
+        let clean = V::from_fn(|i| if n.get(i).abs() * extent.get(i) > error { n.get(i) } else { Scalar::ZERO });
+        (clean != n).then_some(clean)
     }
 }
 
@@ -130,15 +142,16 @@ impl<V: Vector> NearContact<V> {
 
 #[cfg(test)]
 mod tests {
-    use convex_support::glam::{DVec3, Vec2};
-    use convex_support::{Cuboid, Posed, Triangle};
+    use convex_support::glam::{DQuat, DVec3, Vec2};
+    use convex_support::{Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Posed, Triangle};
 
-    use crate::{DistanceOptions, distance};
+    use crate::shape::Shape;
+    use crate::{DistanceOptions, SignedDistanceOptions, distance, signed_distance};
 
     /// A search from zero ends at a simplex with zero on one of its faces, or at a side of a needle that is thinner
     /// than the noise. Seen from aside, the first is within the difference, and the second beside zero.
     #[test]
-    fn signs_that_a_search_leaves_open_are_seen_from_aside() -> Result<(), convex_support::InvalidShape> {
+    fn signs_that_a_search_leaves_open_are_seen_from_aside() -> Result<(), InvalidShape> {
         let cube = Cuboid::new(DVec3::ONE)?;
         let within = distance(&cube, &Cuboid::new(DVec3::splat(0.5))?, DistanceOptions::default());
         assert_eq!((within.upper, within.overlap), (0.0, true), "{within:?}");
@@ -149,6 +162,37 @@ mod tests {
         for beside in [distance(&point, &needle, Default::default()), distance(&needle, &point, Default::default())] {
             assert!(beside.lower > 0.0 && !beside.overlap, "{beside:?}");
         }
+        Ok(())
+    }
+
+    /// Needles a few roundings beside what is small: the length of the needle rounds the query, and tells nothing of the
+    /// gap. A depth search finds the planes too, and a distance may not say that the bodies meet.
+    #[test]
+    fn sides_of_needles_are_told_apart_as_a_depth_does() -> Result<(), InvalidShape> {
+        let apart = |a: Shape<'_, DVec3>, b: Shape<'_, DVec3>, gap: f64| {
+            let (plain, signed) =
+                (distance(a, b, DistanceOptions::default()), signed_distance(a, b, SignedDistanceOptions::new()));
+            assert!(plain.lower > 0.5 * gap && !plain.overlap && plain.lower < 2.0 * gap, "{plain:?}");
+            assert!(signed.lower > 0.5 * gap && !signed.overlap, "{signed:?}");
+        };
+        let speck = Posed::translated(
+            Cuboid::new(DVec3::splat(1e-43))?,
+            DVec3::new(-0.11735953804403598, 0.9999897166614066, 0.1173595380440422),
+        )?;
+        apart(&Cone::<DVec3>::new(20147.429270990804, 0.33195937709484274)?, &speck, 2.5e-15);
+        let short = Posed::translated(
+            Cone::new(0.2762450253964171, 0.9521026630806718)?,
+            DVec3::new(-128.2714892061013, 540.2886984036094, 364.1215706727575),
+        )?;
+        let rod = Posed::translated(
+            Cylinder::new(2142146.808538575, 0.7869414837698594)?,
+            DVec3::new(-127.69366982985628, 0.0, 362.4813269978302),
+        )?;
+        apart(&short, &rod, 2.3e-12);
+        let grain = Ellipsoid::new(DVec3::new(1e-4, 3e-4, -5e-4), DVec3::new(1.1e-4, 7.3e-5, 5.6e-4), DQuat::IDENTITY)?;
+        let wide = DVec3::new(0.75, 0.8, 4675632.701164697);
+        let wall = Posed::translated(Cuboid::new(wide)?, DVec3::X * (1e-4 - 1.1e-4 - 0.75 - 2e-14))?;
+        apart(&grain, &wall, 2e-14);
         Ok(())
     }
 }

@@ -69,6 +69,11 @@ impl<V: Vector> Uncertainty<V> {
         self.stated.min_element() * V::Scalar::from_f64(4.0) < self.stated.max_element()
     }
 
+    /// The least error along any axis.
+    pub(crate) fn least(&self) -> V::Scalar {
+        (self.stated + self.lost).min_element()
+    }
+
     /// A bound on the error of `n·p` for a unit vector `n` and a point `p`.
     #[inline]
     pub(crate) fn along(&self, n: V) -> V::Scalar {
