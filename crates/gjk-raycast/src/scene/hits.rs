@@ -421,16 +421,21 @@ fn swept_point<V: Vector>(ray: Ray<V>) -> Moving<V> {
 
 /// The box of a moving shape, in the frame of the bodies, with room for the target distance. If a number of the shape
 /// is not finite, no body is left out and every single query reports it.
-pub(super) fn swept_shape<A: SupportMap + ?Sized>(
+fn swept_shape<A: SupportMap + ?Sized>(
     shape: &A,
     motion: Motion<A::Vector>,
     options: &LinearCastOptions<A::Vector>,
 ) -> Moving<A::Vector> {
     let around = outer_box(shape).unwrap_or_else(Aabb::everything);
-    let room = A::Vector::splat(Float::max(options.target_distance, Scalar::ZERO));
+    swept_box(around, motion.velocity_a - motion.velocity_b, options.target_distance)
+}
+
+/// A moving box with room for the target distance.
+pub(super) fn swept_box<V: Vector>(around: Aabb<V>, velocity: V, target_distance: V::Scalar) -> Moving<V> {
+    let room = V::splat(Float::max(target_distance, Scalar::ZERO));
     let around = Aabb { min: around.min - room, max: around.max + room };
     let (center, half) = (around.center(), around.half_extents());
     // Both are rounded.
-    let room = (center.abs() + half) * (ScalarOf::<A>::from_f64(4.0) * ScalarOf::<A>::EPSILON);
-    Moving::new(half + room, center, motion.velocity_a - motion.velocity_b)
+    let room = (center.abs() + half) * (V::Scalar::from_f64(4.0) * V::Scalar::EPSILON);
+    Moving::new(half + room, center, velocity)
 }

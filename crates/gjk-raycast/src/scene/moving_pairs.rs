@@ -12,15 +12,17 @@ use super::answers::{OfPair as _, PairImpact, SceneFirstContact, reuse};
 use super::asked::{Asked, asked, asked_pair};
 use super::body::seen_from;
 use super::bounds::{HeightBound, MovingBalls, swept};
-use super::hits::swept_shape;
+use super::hits::swept_box;
 use super::instance::Id;
 use super::pairs::Pairing;
 use super::{Body, Occupant, Scene};
 use crate::motion::{check, checked};
-use crate::{ChainMotion, Impact, LinearCastOptions, Motion, MotionCast, MotionCastOptions, RayCastError, RigidMotion};
+use crate::{ChainMotion, Impact, MotionCast, MotionCastOptions, RayCastError, RigidMotion};
 
 /// The motion of each body.
 type Motions<'f, V> = &'f (dyn Fn(usize) -> RigidMotion<V> + 'f);
+
+type Solid<'s, V> = &'s (dyn SupportMap<Vector = V> + 's);
 
 impl<S: SupportMap> Among<'_, S> {
     /// Finds all pairs of these bodies that meet while each moves as `motion` says for its index: the first contacts by
@@ -214,22 +216,23 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> MovingPairs<'_, '_, S, T>
         Ok(found)
     }
 
-    /// The time from which on two bodies may meet, by the box of the second; `None` if the question is not about them.
+    /// The time from which on two bodies may meet, by their boxes; `None` if the question is not about them.
     fn from(&self, [i, j]: [usize; 2]) -> Option<ScalarOf<S>> {
-        let (a, _) = (self.pairing.a.slot(i)?, self.pairing.b.slot(j)?);
+        let (a, b) = (&self.pairing.a, &self.pairing.b);
+        let (slot, _) = (a.slot(i)?, b.slot(j)?);
         if self.pairing.a.is_pair_left_out(i, j) {
             return None;
         }
-        let around = self.pairing.b.scene.tree.get(j);
-        let (Some(Body::Convex(a)), Some(around)) = (a.body(), around) else { return Some(Scalar::ZERO) };
+        // Half-spaces have no box.
+        let (Some(own), Some(other)) = (a.scene.tree.get(i), b.scene.tree.get(j)) else { return Some(Scalar::ZERO) };
         let [of_a, of_b] = self.motions_of([i, j]);
         if turns(&of_a) || turns(&of_b) {
             let seen = seen_from(of_b, of_a);
-            return Some(MovingBalls::new(a, &ChainMotion::new(&seen), &self.options).bound(&around));
+            let bound =
+                |shape: Solid<'_, _>| MovingBalls::new(shape, &ChainMotion::new(&seen), &self.options).bound(&other);
+            return Some(as_solid(slot, own, bound).unwrap_or(Scalar::ZERO));
         }
-        let motion = Motion { velocity_a: of_a.velocity, velocity_b: of_b.velocity };
-        let options = LinearCastOptions::new().with_target_distance(self.options.target_distance);
-        Some(swept_shape(a, motion, &options).bound(&around))
+        Some(swept_box(own, of_a.velocity - of_b.velocity, self.options.target_distance).bound(&other))
     }
 
     fn motions_of(&self, [i, j]: [usize; 2]) -> [RigidMotion<S::Vector>; 2] {
@@ -313,6 +316,19 @@ fn turns<V: Vector>(motion: &RigidMotion<V>) -> bool {
     motion.angular_velocity != Default::default()
 }
 
+/// What `tell` says of a body, or of the ball around the box of an instance, which holds its members.
+fn as_solid<S: SupportMap, R>(
+    slot: &Occupant<S>,
+    around: Aabb<S::Vector>,
+    tell: impl FnOnce(Solid<'_, S::Vector>) -> R,
+) -> Option<R> {
+    if let Some(Body::Convex(body)) = slot.body() {
+        return Some(tell(body));
+    }
+    let ball = Ball::new(around.half_extents().norm()).ok()?;
+    Some(tell(&Posed::translated(ball, around.center()).ok()?))
+}
+
 /// The bodies that may meet a half-space, by their boxes: all of them if it moves.
 fn over<V: Vector>(
     boxes: &Bvh<V>,
@@ -348,13 +364,9 @@ fn swept_tree<S: SupportMap>(
         let options = MotionCastOptions { target_distance: Scalar::ZERO, ..options };
         let swept = if !turns(&motion) {
             swept(around, motion.velocity, options.max_time)
-        } else if let Some(Body::Convex(body)) = slot.and_then(Occupant::body) {
-            MovingBalls::around(body, &motion, &options)
         } else {
-            // The members of an instance are in the ball around its box.
-            let ball =
-                Ball::new(around.half_extents().norm()).and_then(|ball| Posed::translated(ball, around.center()));
-            ball.map_or_else(|_| Aabb::everything(), |ball| MovingBalls::around(&ball, &motion, &options))
+            let swept = |shape: Solid<'_, _>| MovingBalls::around(shape, &motion, &options);
+            slot.and_then(|slot| as_solid(slot, around, swept)).unwrap_or_else(Aabb::everything)
         };
         Aabb {
             min: S::Vector::from_fn(|i| within(swept.min.get(i), -end)),
