@@ -18,13 +18,13 @@
 //! A [`Zonotope`] is the difference of any two parallelotopes, also of segments and points. In the plane the first has
 //! a third edge, perpendicular to the plane, so that each facet is spanned by two edges there too.
 
+use convex_support::numerics::coordinates::{LEAST, Vec3, array, cross, dot, vector};
 use convex_support::numerics::twofold::two_product;
 use convex_support::{Parallelotope, Scalar, Vector};
 use num_traits::Float;
 
 use crate::body::PointPair;
 use crate::gjk::Frame;
-use convex_support::numerics::coordinates::{LEAST, Vec3, array, cross, dot, vector};
 
 /// The number of edges of two boxes that count, three of each.
 pub(crate) const EDGES: usize = 6;

@@ -1,6 +1,7 @@
 //! The next direction of GJK for curved bodies. For polytopes, whose support points do not move with the plane, there
 //! is nothing to predict.
 
+use convex_support::numerics::angular::cross;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -8,7 +9,6 @@ use super::Gjk;
 use crate::body::TracedSupport;
 use crate::curvature::{LARGEST_TURN, SAME_PIECE, Turned, between, share_of_second, turned};
 use crate::symmetric::{Symmetric, dot};
-use convex_support::numerics::angular::cross;
 
 /// Newton's method on the plane ([`curvature`](crate::curvature)), if the support map returns its curvature.
 ///

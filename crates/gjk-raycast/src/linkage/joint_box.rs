@@ -26,6 +26,7 @@ use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
 use core::cmp::{Ordering, Reverse};
 
+use convex_support::numerics::angular;
 use convex_support::numerics::bound::raised;
 use convex_support::{Core, Posed, Scalar, ScalarOf, SupportMap, Vector, support_value};
 use num_traits::Float;
@@ -40,7 +41,6 @@ use super::path_answer::{BodyPair, FreeBox, Met};
 use super::robot::{LinkView, Linkage};
 use crate::outcome::check_limits;
 use crate::{Body, Scene, SignedDistanceOptions};
-use convex_support::numerics::angular;
 
 /// The number of joints whose signs are tried in all combinations. For each joint beyond these, the worst sign is taken
 /// by itself.

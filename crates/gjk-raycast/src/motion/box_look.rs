@@ -8,6 +8,7 @@
 //! the error of the level, the line through zero along the normal proves it: on one side of zero the line goes through
 //! the facet, and on the other side there is another point of the line in the difference.
 
+use convex_support::numerics::coordinates::{Vec3, array, dot, vector};
 use convex_support::{Hint, Parallelotope, Scalar, SupportMap as _, Vector};
 use num_traits::Float;
 
@@ -15,11 +16,9 @@ use super::instant::{Instant, Limits, NEAR_IN_MOTION};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::boxes::{EDGES, Zonotope, ZonotopeFacet};
-use crate::gjk::rounding;
-use crate::gjk::slack;
+use crate::gjk::{rounding, slack};
 use crate::separation::Uncertainty;
 use crate::unit::{is_moderate, reciprocal_of_power};
-use convex_support::numerics::coordinates::{Vec3, array, dot, vector};
 
 /// A bound on the error of the unit vector along an edge, in ε: three for each of two rotations, and one for its
 /// length.

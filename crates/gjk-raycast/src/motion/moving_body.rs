@@ -1,5 +1,6 @@
 //! A body and its motion: where it is at a time, and a bound on how its points accelerate in between.
 
+use convex_support::numerics::coordinates::{LEAST, Vec3, array, cross, dot, vector};
 use convex_support::{AngularVelocity, BoundingSphere, Core, CoreKind, Matrix, Parallelotope, Scalar, Spin, Vector};
 use num_traits::Float;
 
@@ -8,7 +9,6 @@ use super::rigid_motion::{SpinOf, turn_error};
 use super::trajectory::{MovingBall, RigidMotion, Trajectory, TurningPlane};
 use crate::pair::Shape;
 use crate::unit::length_bound;
-use convex_support::numerics::coordinates::{LEAST, Vec3, array, cross, dot, vector};
 
 /// If the cosine of the angle between two edges is more than this, a parallelotope does not count as a box.
 const NOT_A_BOX: f64 = 1e-6;

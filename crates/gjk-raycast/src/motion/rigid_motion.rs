@@ -1,12 +1,12 @@
 //! Motion at constant linear and angular velocity.
 
+use convex_support::numerics::angular;
 use convex_support::numerics::bound::least;
 use convex_support::numerics::elementary::tan;
 use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::trajectory::{Displacement, MovingBall, RigidMotion, Trajectory, TurningPlane};
-use convex_support::numerics::angular;
 
 /// The spin of the angular velocities of a space.
 pub(super) type SpinOf<V> = <<V as Vector>::AngularVelocity as AngularVelocity<V>>::Spin;

@@ -5,6 +5,7 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::any::{Any, TypeId};
 
+use convex_support::numerics::coordinates::{LEAST, Vec3, cross, dot};
 use convex_support::numerics::orientation::{six_volumes, twice_area};
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -13,7 +14,6 @@ use smallvec::SmallVec;
 use crate::separation::cores::Vertex;
 use crate::separation::near::faces::turned_right;
 use crate::simplex::{MAX_POINTS, nearest_face};
-use convex_support::numerics::coordinates::{LEAST, Vec3, cross, dot};
 
 /// Corners of a facet, of which a polygon's has two and a polyhedron's three.
 const FACET_CORNERS: usize = MAX_POINTS - 1;

@@ -1,12 +1,12 @@
 //! The faces of a simplex of points of the difference: vectors across them, and where a line through zero pierces them.
 
+use convex_support::numerics::angular::cross;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::body::PointPair;
 use crate::simplex::MAX_POINTS;
 use crate::symmetric::{self, Across, axes_across, dot, way};
-use convex_support::numerics::angular::cross;
 
 /// As many corners as there are dimensions, projected along a unit vector: their coordinates across it, and their
 /// heights along it. The line through zero along that vector pierces their face where zero is within the projection.

@@ -7,6 +7,7 @@
 
 use convex_support::glam::DVec3;
 use convex_support::numerics::bound::{least, raised};
+use convex_support::numerics::coordinates::{array, vector};
 use convex_support::{Core, CoreKind, Hint, Scalar, compiled_once};
 
 use super::Uncertainty;
@@ -14,7 +15,6 @@ use crate::body::PointPair;
 use crate::pair::{Aligned, Pair, Shapes};
 use crate::segments;
 use crate::{SignedDistance, Status};
-use convex_support::numerics::coordinates::{array, vector};
 
 /// The rounding in double precision, in ε of the size: some 20 operations, each of half of that.
 const ROUNDED_IN_DOUBLE: f64 = 32.0;
