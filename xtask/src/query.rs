@@ -110,6 +110,12 @@ fn answer_file(
     if file == Path::new("-") {
         return answer_lines(io::stdin().lock(), lines, &meshes(Path::new("")), door, output);
     }
+    let is_table = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+    if is_table && door.template.is_none() {
+        return Err(Failure::Input(io::Error::other(
+            "a table needs a `--template`, the query with `$name` for a cell",
+        )));
+    }
     let folder = file.parent().unwrap_or(Path::new(""));
     answer_lines(File::open(file).map_err(Failure::Input)?, lines, &meshes(folder), door, output)
 }
@@ -285,6 +291,13 @@ mod tests {
         assert_eq!(rows[2], "5,,,\"the row has 2 cells, and the first row 3\"");
         assert!(rows[3].starts_with("negative,,,") && rows[3].contains("radius"), "{}", rows[3]);
         assert_eq!(rows.len(), 4);
+    }
+
+    #[test]
+    fn a_table_without_a_template_is_no_query_file() {
+        let access = Access::parse("none").expect("no meshes");
+        let told = answer_file(Path::new("parts.csv"), &access, Lines { read: 0 }, AS_JSON, &mut Vec::new());
+        assert!(matches!(&told, Err(Failure::Input(why)) if why.to_string().contains("--template")), "{told:?}");
     }
 
     fn answers(input: &[u8], first_line: u64) -> Vec<u8> {

@@ -79,7 +79,7 @@ mod angular_velocity;
 mod ball_support;
 mod bounds;
 #[cfg(feature = "alloc")]
-mod bvh;
+pub mod bvh;
 mod closest_point;
 mod combinators;
 mod compiled_once;
@@ -112,10 +112,12 @@ mod vector;
 pub use glam;
 
 pub use bounds::{Aabb, BoundingSphere, bounding_box, bounding_sphere};
+// All of it is at the root as well, and shown in its module alone: the first page stays short.
 #[cfg(feature = "alloc")]
+#[doc(hidden)]
 pub use bvh::{
-    Bound, BoxDistance, Boxes, Bvh, CoarseBound, CoarseBoxDistance, CoarseSweptBox, CoarseUnit, Frame, SweptBox, WIDTH,
-    nearest_pairs::NearestPairs, outer_box, pairs::PairSearch,
+    Bound, BoxDistance, Boxes, Bvh, CoarseBound, CoarseBoxDistance, CoarseSweptBox, CoarseUnit, Frame, NearestPairs,
+    PairSearch, SweptBox, WIDTH, outer_box,
 };
 pub use closest_point::closest_point;
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};

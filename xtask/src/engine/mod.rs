@@ -431,7 +431,8 @@ mod tests {
         let meant = "query: \"raycast\" is unknown, did you mean \"ray_cast\"? (known: ray_cast, ray_exit, distance, ";
         assert!(query.message.starts_with(meant), "{query:?}");
         assert_eq!(shape.kind, Kind::UnknownShape, "{shape:?}");
-        assert!(shape.message.starts_with("a.type: \"sphere\" is unknown (known: point, segment, "), "{shape:?}");
+        let meant = "a.type: \"sphere\" is unknown, did you mean \"ball\"? (known: point, segment, ";
+        assert!(shape.message.starts_with(meant), "{shape:?}");
         let half = refused(r#"{"query":"distance","a":{"type":"ball","radius":1},"b":{"type":"halfspace"}}"#);
         assert!(half.message.starts_with("b.type: \"halfspace\" is unknown, did you mean \"half_space\"?"), "{half:?}");
         let start = refused(&format!(r#"{{"query":"linear_cast",{PAIR},"start_in_contact":"if_deper"}}"#));

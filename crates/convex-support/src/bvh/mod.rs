@@ -1,13 +1,17 @@
-//! A bounding volume hierarchy: finds the boxes that a question concerns, without testing each.
+//! A bounding volume hierarchy, the tree of boxes of a [`Bvh`]: finds the boxes that a question concerns, without
+//! testing each.
+//!
+//! [`outer_box`] is the box of a shape with room for rounding. A question is a [`Bound`]: a [`BoxDistance`], a
+//! [`SweptBox`], or one of yours. To ask shapes and not boxes, take a `Scene` of gjk-raycast.
 
 mod bound;
 mod build;
 mod change;
 mod frame;
-pub(crate) mod nearest_pairs;
+mod nearest_pairs;
 mod node;
 mod outer_box;
-pub(crate) mod pairs;
+mod pairs;
 mod search;
 
 use alloc::vec::Vec;
@@ -16,9 +20,11 @@ use crate::{Aabb, Vector};
 
 pub use self::bound::{Bound, BoxDistance, CoarseBound, CoarseBoxDistance, CoarseSweptBox, SweptBox};
 pub use self::frame::{CoarseUnit, Frame};
+pub use self::nearest_pairs::NearestPairs;
 pub use self::node::{Boxes, WIDTH};
 use self::node::{Node, Slot};
 pub use self::outer_box::outer_box;
+pub use self::pairs::PairSearch;
 
 /// A tree over the boxes of items, which the caller names by numbers from 0 to 2³⁰ − 1.
 ///

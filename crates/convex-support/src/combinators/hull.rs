@@ -21,7 +21,7 @@ use crate::{Core, CoreKind, Hint, Rounding, Scalar, SupportMap, Vector};
 /// assert_eq!(teardrop.support(DVec2::NEG_Y), DVec2::new(0.0, -1.0));
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
-#[doc(alias("tapered_capsule", "convex_hull", "swept_sphere"))]
+#[doc(alias("tapered_capsule", "frustum", "truncated_cone", "convex_hull", "swept_sphere"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hull<A: SupportMap, B> {
     a: A,

@@ -31,6 +31,7 @@ pub struct Work {
 pub struct SceneCast<H, S: Scalar> {
     /// The first hit; `None` if every body is missed. Of bodies hit at the same λ or time, it is the one with the
     /// lowest index.
+    #[doc(alias = "hit")]
     pub first: Option<BodyHit<H, S>>,
     /// No body is hit before this λ or time; infinite if all are missed.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
