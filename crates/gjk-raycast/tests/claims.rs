@@ -148,6 +148,21 @@ fn rays_that_end_before_an_edge_miss_by_a_plane_that_faces_them() {
     of(&Cuboid::new(glam::DVec3::new(r, h, 1.0)).expect("a cuboid"), [-r, h, 0.1], 0);
 }
 
+/// A ball of 2⁻²⁴ slides along a segment that it touches to rounding: of two planes with nearly opposite normals the one
+/// through the crossing of their lines is far behind the start, and the miss is told by the one that is left.
+#[test]
+fn a_speck_that_slides_along_a_segment_misses_by_a_plane_at_the_start() {
+    type V = glam::Vec2;
+    let speck = Posed::translated(Ball::<V>::new(5.960_464_5e-8).expect("a ball"), V::new(-2.0, 0.0)).expect("finite");
+    let segment = Segment::new([V::new(-0.473_946_32, -2.623_388_8), V::new(2.636_861, 0.491_188_8)]);
+    let segment = Posed::translated(segment.expect("finite"), V::new(-2.075_654, 2.073_128_8)).expect("finite");
+    let motion =
+        Motion { velocity_a: V::new(0.378_194_24, -1.831_468_6), velocity_b: V::new(2.175_593_6, -2.182_592_2) };
+    let options = LinearCastOptions::default().with_start_in_contact(StartInContact::IfDeeper);
+    let report = laws::linear_cast(&speck, &segment, motion, options, &[V::X, V::new(0.5, -0.25)]);
+    assert!(report.broken.is_empty(), "{report}");
+}
+
 /// A point leaves the end of a capsule that is nearly along its way, both far from the origin of the world: no plane
 /// across the way keeps them apart, and the miss is told by the plane through both that does.
 #[test]
