@@ -137,9 +137,11 @@ impl<V: Vector> StartingPair<'_, V> {
             let least = if crossing > zero { before.at(crossing).min(after.at(crossing)) } else { after.gap };
             if least >= never {
                 // A plane that is left, and keeps the shapes as far apart as they began, or else the one through the
-                // crossing of both lines, which is neither left nor closed in on.
+                // crossing of both lines, which is neither left nor closed in on. Where both normals are nearly
+                // opposite, as at a needle, that one is deeper than either by the quotient of the lengths.
                 let level = before.normal * -after.closing + after.normal * before.closing;
-                let is_kept = !(crossing > zero) || after.gap >= start.lower.min(self.target);
+                let height = (before.gap * -after.closing + after.gap * before.closing) / level.norm();
+                let is_kept = !(crossing > zero) || after.gap >= start.lower.min(self.target) || !(height > after.gap);
                 let best = if after.gap >= never { after.normal } else { before.normal };
                 return Some(Later::Never(if is_kept { best } else { level.unit().unwrap_or(best) }));
             }

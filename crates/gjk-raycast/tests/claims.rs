@@ -2,8 +2,8 @@
 
 use convex_support::strategies::{AnyShape, combined, pose, primitive, primitive_3d};
 use convex_support::{
-    Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Matrix, Point, Posed, Scalar, Segment, SupportMap,
-    Vector, glam,
+    Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Hull, Matrix, MinkowskiSum, Point, Posed, Scalar,
+    Segment, SupportMap, Vector, glam,
 };
 use gjk_raycast::laws::{self, Law, PairPlanes};
 use gjk_raycast::{LinearCastOptions, Motion, MotionCastOptions, Ray, RigidMotion, StartInContact};
@@ -146,6 +146,49 @@ fn rays_that_end_before_an_edge_miss_by_a_plane_that_faces_them() {
     }
     of(&Cuboid::new(glam::DVec2::new(r, h)).expect("a cuboid"), [r, -h, 0.0], 0);
     of(&Cuboid::new(glam::DVec3::new(r, h, 1.0)).expect("a cuboid"), [-r, h, 0.1], 0);
+}
+
+/// A ball of 6e-6 rolls in a body of size 3, so that in single precision the step to the normal at the ray is rounding:
+/// a warm ray has the normal of the plane that was found instead.
+#[test]
+fn a_warm_ray_at_an_edge_rounded_by_little_has_the_normal_of_its_plane() {
+    type V = glam::Vec3A;
+    let v = |x: [f64; 3]| V::from_array(x.map(Scalar::from_f64));
+    let turn = glam::DQuat::from_xyzw(1.1352131618357415, -0.5420584280089376, 1.3625661802655396, 0.529924824030819);
+    let point = Point::new(v([-0.4497745875519328, -0.1468400966199075, -0.6532257271557929])).expect("finite");
+    let at = v([-0.16191844453482784, -0.6914726140066936, -0.375344655979136]);
+    let point = Posed::new(point, turn.as_quat(), at).expect("a pose");
+    let round = MinkowskiSum::new(
+        Cylinder::<V>::new(0.6787931, 0.87845606).expect("a cylinder"),
+        Capsule::<V>::new(0.657_739_75, 6.1417694e-6).expect("a capsule"),
+    );
+    let ends = [
+        [-0.29643369438490086, -0.21013971066001624, -0.9038552930178623],
+        [-0.7888121973193714, 0.7171845927341274, 0.059523085326811165],
+    ];
+    let cube = Cuboid::new(v([0.11958428701250608, 0.29118679146658516, 0.0845260690355983])).expect("a cuboid");
+    let hull = Hull::new(Segment::new(ends.map(v)).expect("finite"), cube);
+    let target = Difference::new(point, MinkowskiSum::new(round, hull));
+    let source = v([-0.9033704518919887, -1.2720737269634255, 2.844134495987783]);
+    let ray = Ray { source, direction: v([0.5415308518919888, 0.000547426963425357, -1.9978820959877828]) };
+    let starts = [v([1.0, 0.0, 0.0]), v([0.5, -0.25, 0.125]), v([0.0, 1.0, 0.0]), v([-0.7, 0.3, 0.2])];
+    let report = laws::ray(&target, ray, Default::default(), &starts);
+    assert!(report.broken.is_empty(), "{report}");
+}
+
+/// A ball of 2⁻²⁴ slides along a segment that it touches to rounding: of two planes with nearly opposite normals the one
+/// through the crossing of their lines is far behind the start, and the miss is told by the one that is left.
+#[test]
+fn a_speck_that_slides_along_a_segment_misses_by_a_plane_at_the_start() {
+    type V = glam::Vec2;
+    let speck = Posed::translated(Ball::<V>::new(5.960_464_5e-8).expect("a ball"), V::new(-2.0, 0.0)).expect("finite");
+    let segment = Segment::new([V::new(-0.473_946_32, -2.623_388_8), V::new(2.636_861, 0.491_188_8)]);
+    let segment = Posed::translated(segment.expect("finite"), V::new(-2.075_654, 2.073_128_8)).expect("finite");
+    let motion =
+        Motion { velocity_a: V::new(0.378_194_24, -1.831_468_6), velocity_b: V::new(2.175_593_6, -2.182_592_2) };
+    let options = LinearCastOptions::default().with_start_in_contact(StartInContact::IfDeeper);
+    let report = laws::linear_cast(&speck, &segment, motion, options, &[V::X, V::new(0.5, -0.25)]);
+    assert!(report.broken.is_empty(), "{report}");
 }
 
 /// A point leaves the end of a capsule that is nearly along its way, both far from the origin of the world: no plane

@@ -484,13 +484,13 @@ impl<'p, V: Vector> Search<'p, V> {
     }
 
     /// Whether the bodies move against one another, within the bracket, by no more than a converged answer may leave
-    /// open: by their speed, or else by the plane of the last time at which they are apart.
+    /// open: by two levels of the plane of the last time at which they are apart, which tell how deep they are. The speed
+    /// of their closest points tells nothing of other points.
     ///
-    /// Where that plane does not keep the bodies apart, the speed of their closest points tells nothing of other points,
-    /// and the error of their distance is that of a search that may have ended early. Then two levels of the plane tell
-    /// how deep they are, and the error is that of a level. In between, the level is a part of the acceleration lower.
+    /// Where that plane does not keep the bodies apart, the error of their distance is that of a search that may have
+    /// ended early, and the error is that of a level; in between, the level is a part of the acceleration lower.
     fn is_narrow(&self) -> bool {
-        let (number, Instant { time, normal, gap, error, closing, .. }) = (V::Scalar::from_f64, self.near);
+        let (number, Instant { time, normal, gap, error, .. }) = (V::Scalar::from_f64, self.near);
         let (zero, from, size) = (V::Scalar::ZERO, self.lower().min(time), self.bodies.size());
         let width = self.upper - from;
         if width <= zero {
@@ -504,15 +504,14 @@ impl<'p, V: Vector> Search<'p, V> {
             // The last plane is of a later time than the first one of the bracket.
             return width * self.bodies.speed_at(&self.near) <= narrow(error);
         }
-        let most = self.bodies.acceleration_along(TurningPlane { from: normal, to: normal }, [time, self.upper]);
-        if gap > zero && width * (closing.abs() + most * width * number(0.5)) <= narrow(error) {
-            return true;
-        }
         let before = if self.base.stage == Stage::Apart { zero } else { self.bodies.level(time, normal).0 };
         let (level, rounded) = self.bodies.level(self.upper, normal);
-        let lower = if gap > zero { zero } else { most * width * width * number(0.125) };
+        if gap > zero {
+            return (before - level).abs() <= narrow(error);
+        }
+        let most = self.bodies.acceleration_along(TurningPlane { from: normal, to: normal }, [time, self.upper]);
         // NaN is not narrow.
-        (before - level).abs() + lower <= narrow(if gap > zero { error } else { rounded })
+        (before - level).abs() + most * width * width * number(0.125) <= narrow(rounded)
     }
 
     pub(super) fn answer(&self, end: MotionEnd<V>) -> MotionCast<V> {
@@ -546,4 +545,34 @@ impl<'p, V: Vector> Search<'p, V> {
 /// The next larger number after a time, or one a little larger.
 fn next_after<S: Scalar>(time: S) -> S {
     (time + time.abs() * S::EPSILON).max(time + S::min_positive_value())
+}
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::{DQuat, DVec3};
+    use convex_support::{Cuboid, Cylinder, InvalidShape, Posed};
+
+    use crate::{MotionCastOptions, RigidMotion, SignedDistanceOptions, Status, motion_cast, signed_distance};
+
+    /// A box that touches the end of a long cylinder, to rounding, turns into it: its closest point hardly approaches,
+    /// and points far from there do. An upper bound at which the bodies are deep is not called converged.
+    #[test]
+    fn other_points_than_the_closest_ones_tell_how_deep_the_bodies_are() -> Result<(), InvalidShape> {
+        let a = Posed::translated(Cuboid::new(DVec3::new(1.0, 3.0, 1.0))?, DVec3::new(1.0, 0.0, -4.0))?;
+        let foot = DVec3::new(-3.1027516341722e-17, -2.001160870279456e-15, -2.2329694452591164);
+        let b = Posed::translated(Cylinder::new(29870.989889679193, 0.76703055474088)?, foot)?;
+        let angular_velocity = DVec3::new(-0.1386865502427681, -1.0045336016232225, -2.1258279487318488);
+        let center = DVec3::new(4.516333359560323e-6, -3.4797474841359846e-6, 1.4865091804082592e-6);
+        let velocity = DVec3::new(-1.570542421332175e-5, 4.5191803904694433e-7, -9.369990039898312e-6);
+        let [motion, still] =
+            [RigidMotion { velocity, angular_velocity, center }, RigidMotion::translation(DVec3::ZERO)];
+        let cast = motion_cast(&a, motion, &b, still, MotionCastOptions::new().with_max_time(2.0)).expect("a motion");
+        assert!(cast.is_certain() && cast.outcome.is_hit(), "{cast:?}");
+        let turn = DQuat::from_scaled_axis(angular_velocity * cast.upper);
+        let shift = center - turn * center + velocity * cast.upper;
+        let then = signed_distance(&Posed::new(a, turn, shift)?, &b, SignedDistanceOptions::new());
+        let narrow = 1024.0 * f64::EPSILON * 3e4;
+        assert!(cast.status != Status::Converged || then.lower > -narrow, "{cast:?} {then:?}");
+        Ok(())
+    }
 }

@@ -101,7 +101,8 @@ pub(super) fn smooth<V: Vector>(
 ///
 /// With `c = p − ρ·n` the ball's centre, `n` of unit length, the line enters it at `t_c − √(ρ² − u_c² − v_c²)`:
 /// behind the plane by the square of the distance from `p`. The normal and both shapes' points are moved to where
-/// Newton's step leads, `δ` with `H·δ = −(u, v)`, by each shape's part of the core's Hessian.
+/// Newton's step leads, `δ` with `H·δ = −(u, v)`, by each shape's part of the core's Hessian. At a ball as small as the
+/// root of the noise that step may be rounding, by an angle at which far points of the body are before the plane.
 #[inline(never)]
 fn in_ball<V: Vector>(
     bracket: &mut Bracket<'_, V>,
@@ -111,10 +112,13 @@ fn in_ball<V: Vector>(
     hessian: Symmetric<V::Scalar>,
 ) -> Option<RayContact<V>> {
     let (radius, alpha) = (bracket.rolling_radius, best.alpha);
+    // NaN fails this too.
+    if !(radius * radius > bracket.noise) {
+        return None;
+    }
     let per_length = radius / alpha.length();
     let (u, v) = (p.u - alpha.a * per_length, p.v - alpha.b * per_length);
     let high = p.t + per_length - (radius * radius - (u * u + v * v)).sqrt();
-    // NaN fails this too.
     if !(p.alpha == Some(alpha) && alpha.is_within(high - best.tau, bracket.noise)) {
         return None;
     }
