@@ -1,9 +1,11 @@
 //! A level of a game: a mesh for the ground, hulls for what stands on it, entities in layers, a character, bullets that
 //! are not mistaken for the targets that they replace, and a mouse that picks.
 //!
-//! `cargo run -p gjk-raycast --example game_level`
+//! `cargo run -p gjk-raycast --example game_level -- docs/figures/game-level.svg` also draws it.
 
 #![allow(clippy::print_stdout, reason = "an example talks")]
+
+mod level;
 
 use std::collections::HashMap;
 use std::error::Error;
@@ -13,6 +15,8 @@ use convex_support::{Ball, Capsule, Polytope, Posed, SupportMap};
 use gjk_raycast::{
     BodyHandle, DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastOptions, RigidMotion, Scene,
 };
+
+use crate::level::Picture;
 
 /// Shapes of any kind, in single precision as games have it; `Sync`, since layers are asked by a closure that may be.
 type Shape = Box<dyn SupportMap<Vector = Vec3> + Sync>;
@@ -79,6 +83,10 @@ fn hull(points: [[f32; 3]; 5]) -> Result<Shape, Box<dyn Error>> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let ground = ground()?;
+    let mut picture = Picture::default();
+    for (_, triangle) in ground.iter().filter_map(|(index, body)| Some((index, body.convex()?))) {
+        picture.body("ground", triangle);
+    }
     let mut world = World::default();
     let still = |name, layers| Entity { name, layers, velocity: Vec3::ZERO };
     // A crystal of two convex pieces, as a decomposition gives them.
@@ -90,7 +98,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let enemy = world.add(Box::new(enemy_at(5.0)?), still("enemy", ENEMY))?;
 
     // The character walks until something solid is in the way; enemies are no obstacles. The ground is a scene apart.
-    let hero = Posed::translated(Capsule::new(0.6, 0.3)?, Vec3::new(-2.0, 1.0, 0.0))?;
+    let start = Vec3::new(-2.0, 1.0, 0.0);
+    let hero = Posed::translated(Capsule::new(0.6, 0.3)?, start)?;
     let walk = Motion { velocity_a: Vec3::X * 2.0, ..Motion::default() };
     let solid = |body| world.is_in(body, SOLID);
     let stop = world.bodies.among(&solid).linear_cast(&hero, walk, LinearCastOptions::new())?.first;
@@ -98,6 +107,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("the hero walks {:.2} s up to the {}", stop.hit.time, world.entity(stop.body).map_or("?", |it| it.name));
     let below = ground.all().any_within(&hero, 0.5, DistanceOptions::new());
     assert!(below.any && stop.body < 2, "over the ground, up to the crystal");
+    let way = walk.velocity_a * stop.hit.time;
+    picture.body("was", &hero);
+    picture.body("hero", &Posed::translated(hero, way)?);
+    picture.way("walk", start, start + way);
+    picture.label("the hero walks up to the crystal", start + Vec3::Y * 2.2);
 
     // Bullets fly at the enemy, all in one step. Those of one gun do not hit each other.
     for x in [0.0, 1.0] {
@@ -112,10 +126,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     for hit in &hits {
         let [a, b] = [hit.a, hit.b].map(|body| world.entity(body).map_or("?", |it| it.name));
         println!("{b} {} hits {a} {} after {:.4} s", hit.b, hit.a, hit.impact.time);
+        let flown = flies(hit.b).velocity * hit.impact.time;
+        picture.way("shot", hit.impact.point - flown, hit.impact.point);
     }
     assert_eq!(hits.iter().map(|hit| (hit.a, hit.b)).collect::<Vec<_>>(), [(2, 4), (2, 3)], "the nearer one first");
 
     // The enemy is gone. What takes its index is not taken for it.
+    picture.body("gone", &enemy_at(5.0)?);
+    picture.label("bullets hit the enemy", Vec3::new(5.0, 0.0, 4.0));
     world.remove(enemy);
     let next = world.add(Box::new(enemy_at(-5.0)?), still("enemy", ENEMY))?;
     assert!(world.bodies.index_of(enemy).is_none() && world.bodies.index_of(next) == Some(2), "another one");
@@ -127,14 +145,30 @@ fn main() -> Result<(), Box<dyn Error>> {
         let body = world.bodies.ray_cast(ray, RayCastOptions::new())?.first;
         let floor = ground.ray_cast_fronts(ray, RayCastOptions::new())?.first.ok_or("the ground is below")?;
         match body.filter(|body| body.hit.lambda < floor.hit.lambda) {
-            Some(body) => println!("picked the {}", world.entity(body.body).map_or("?", |it| it.name)),
+            Some(body) => {
+                println!("picked the {}", world.entity(body.body).map_or("?", |it| it.name));
+                picture.way("ray", eye, body.hit.point);
+                picture.label("picked: a body", body.hit.point);
+            }
             None => {
                 let triangle = ground.get(floor.body).and_then(|body| body.convex()).ok_or("it was hit")?;
                 let weights = triangle.barycentric(floor.hit.point);
+                picture.body("picked", triangle);
+                picture.way("ray", eye, floor.hit.point);
+                picture.label("picked: a triangle", floor.hit.point);
                 println!("picked triangle {} of the ground, at {weights:.3?}", floor.body);
                 assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-6, "weights of the corners");
             }
         }
+    }
+
+    for (index, body) in world.bodies.iter() {
+        if let (Some(entity), Some(shape)) = (world.entity(index), body.convex()) {
+            picture.body(entity.name, shape);
+        }
+    }
+    if let Some(file) = std::env::args().nth(1) {
+        std::fs::write(file, picture.svg())?;
     }
     Ok(())
 }
