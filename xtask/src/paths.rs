@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use clap::Args;
 use serde_json::Value;
 
-use crate::engine::path::{EdgeReport, Verdict, edges, picture as drawn};
+use crate::engine::path::{EdgeReport, Pictures, Verdict, edges, pictures};
 use crate::mesh::Meshes;
 use crate::wire::json;
 
@@ -22,14 +22,39 @@ pub struct Choice {
     /// Draw the first path in space that touches something, and its contact, into a file of this name.
     #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
+    /// Draw how near the robot comes along the last path in space that is free: what is proved, and what poses say.
+    #[arg(long, value_name = "FILE.svg")]
+    clearance: Option<PathBuf>,
+    /// Draw the box of two joint values that is grown around the middle of that path's first edge.
+    #[arg(long, value_name = "FILE.svg")]
+    grown: Option<PathBuf>,
+}
+
+/// The pictures to be drawn: of the first path that touches something, and of the last one that is free.
+struct ToDraw<'c> {
+    touching: Option<&'c Path>,
+    free: [Option<&'c Path>; 2],
+}
+
+impl ToDraw<'_> {
+    fn draw(&mut self, drawn: Pictures) -> Result<(), String> {
+        let files = match drawn {
+            Pictures::Touching(svg) => vec![(self.touching.take(), svg)],
+            Pictures::Free(svgs) => self.free.into_iter().zip(svgs).collect(),
+        };
+        files.into_iter().filter_map(|(file, svg)| Some((file?, svg))).try_for_each(|(file, svg)| {
+            fs::write(file, svg).map_err(|why| format!("cannot write {}: {why}", file.display()))
+        })
+    }
 }
 
 /// Prints the table.
 #[must_use]
 pub fn run(choice: &Choice) -> ExitCode {
     let mut groups = BTreeMap::<String, Vec<EdgeReport>>::new();
-    let mut picture = choice.picture.as_deref();
-    let read = choice.files.iter().try_for_each(|file| read(file, &mut groups, &mut picture));
+    let free = [choice.clearance.as_deref(), choice.grown.as_deref()];
+    let mut to_draw = ToDraw { touching: choice.picture.as_deref(), free };
+    let read = choice.files.iter().try_for_each(|file| read(file, &mut groups, &mut to_draw));
     if read.is_err() {
         return crate::output::ended(read.map(|()| true));
     }
@@ -39,13 +64,8 @@ pub fn run(choice: &Choice) -> ExitCode {
     }
 }
 
-/// Asks every path of a file, and puts its edges into the group of its first tag. A picture that is still to be drawn is
-/// drawn of the first that touches something.
-fn read(
-    file: &Path,
-    groups: &mut BTreeMap<String, Vec<EdgeReport>>,
-    picture: &mut Option<&Path>,
-) -> Result<(), String> {
+/// Asks every path of a file, and puts its edges into the group of its first tag. Draws what is still to be drawn.
+fn read(file: &Path, groups: &mut BTreeMap<String, Vec<EdgeReport>>, to_draw: &mut ToDraw<'_>) -> Result<(), String> {
     let text = fs::read_to_string(file).map_err(|why| format!("cannot read {}: {why}", file.display()))?;
     let meshes = Meshes::relative_to(file.parent().unwrap_or(Path::new("")));
     for (number, line) in text.lines().enumerate() {
@@ -60,11 +80,9 @@ fn read(
         let tag = object.get("tags").and_then(|tags| tags.get(0)).and_then(Value::as_str).unwrap_or("untagged");
         let found = edges(&object, &meshes).map_err(|problem| failed(problem.message))?;
         groups.entry(tag.to_owned()).or_default().extend(found);
-        if let Some(file) = *picture
-            && let Some((svg, true)) = drawn(&object, &meshes).map_err(|problem| failed(problem.message))?
-        {
-            fs::write(file, svg).map_err(|why| format!("cannot write {}: {why}", file.display()))?;
-            *picture = None;
+        let is_done = to_draw.touching.is_none() && to_draw.free == [None; 2];
+        if !is_done && let Some(drawn) = pictures(&object, &meshes).map_err(|problem| failed(problem.message))? {
+            to_draw.draw(drawn)?;
         }
     }
     Ok(())

@@ -2,6 +2,7 @@
 
 mod cast;
 mod clearance;
+mod clearance_plots;
 mod contact;
 mod distance;
 mod enclosing;

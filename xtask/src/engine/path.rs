@@ -12,7 +12,7 @@ use gjk_raycast::{
 use std::time::Instant as ThreadTime;
 
 use super::motion_clearance::{free_part, of_met, with_points};
-use super::{Ask, EVERY, How, Precision, Query, Question, meeting, path_picture, scalar, status};
+use super::{Ask, EVERY, How, Precision, Query, Question, clearance_plots, meeting, path_picture, scalar, status};
 use crate::mesh::Meshes;
 use crate::wire::answer::{Answer, Field};
 use crate::wire::body::{Body, Built, refused, scene_of};
@@ -24,6 +24,8 @@ use crate::wire::shape::{Solid, Space};
 
 /// How often an edge is timed.
 const RUNS: usize = 5;
+/// The joints whose free box is drawn.
+const BOX_JOINTS: [usize; 2] = [0, 1];
 
 /// A robot among bodies at rest, as written, with the pairs of its own links that are tested.
 pub(super) struct Surrounded {
@@ -297,11 +299,21 @@ pub fn edges(object: &Object, meshes: &Meshes) -> Result<Vec<EdgeReport>, Proble
     }
 }
 
-/// The way of a `path` query as a picture, an `<svg>` element, and whether it touches something; `None` in the plane.
+/// Pictures of the way of a `path` query, `<svg>` elements.
+#[derive(Clone, Debug)]
+pub enum Pictures {
+    /// The way, and where it touches something.
+    Touching(String),
+    /// How near it comes to anything, and how far two joint values may change in the middle of its first edge.
+    Free([String; 2]),
+}
+
+/// The way of a `path` query in pictures; `None` in the plane, if it is undecided, or if it is free and its robot has one
+/// joint, or nothing to come near to.
 ///
 /// # Errors
 /// Where the query is none.
-pub fn picture(object: &Object, meshes: &Meshes) -> Result<Option<(String, bool)>, Problem> {
+pub fn pictures(object: &Object, meshes: &Meshes) -> Result<Option<Pictures>, Problem> {
     let dimension = Dimension::default();
     let fields = Written::new(object, &dimension).fields(EVERY, Path::FIELDS)?;
     let query = Path::read(&fields)?;
@@ -309,9 +321,19 @@ pub fn picture(object: &Object, meshes: &Meshes) -> Result<Option<(String, bool)
         return Ok(None);
     }
     let way = query.way::<DVec3>(&How { precision: Precision::F64, tol: None, method: None, meshes })?;
-    let contact = way.solve()?.0.contact();
-    let svg = path_picture::svg(&way.robot, &way.scene, &way.waypoints, contact);
-    Ok(svg.map(|svg| (svg, contact.is_some())))
+    let path = way.solve()?.0;
+    let Way { robot, scene, waypoints, .. } = &way;
+    if let contact @ Some(_) = path.contact() {
+        return Ok(path_picture::svg(robot, scene, waypoints, contact).map(Pictures::Touching));
+    }
+    if !path.is_free() || robot.values() <= BOX_JOINTS[1] {
+        return Ok(None);
+    }
+    let Some(near) = clearance_plots::along_way(robot, scene, waypoints).map_err(problem)? else { return Ok(None) };
+    let [from, to] = [0, 1].map(|end: usize| &waypoints[end.min(waypoints.len() - 1)]);
+    let middle: Vec<f64> = from.iter().zip(to).map(|(&a, &b)| f64::midpoint(a, b)).collect();
+    let grown = clearance_plots::grown_box(robot, scene, &middle, BOX_JOINTS).map_err(problem)?;
+    Ok(Some(Pictures::Free([near.file(), grown.file()])))
 }
 
 impl<V: Space<Scalar = f64>> Way<V> {

@@ -5,6 +5,8 @@
 //! its jerk. Then the ball goes no farther within the time `h` than `v·h + a·h²/2 + j·h³/6`. If nothing is within that
 //! distance of the ball, the link is free for the whole part. If something is, the part is halved, as long as the
 //! distance is large beside the ball. After that, each body of the link is listed with what is near it, to be cast.
+//! One link is looked at from another only if their regions are near one another as the world sees them: most pairs of
+//! links are far apart, and the route from one to the other is long.
 
 use alloc::vec::Vec;
 use core::ops::{ControlFlow, Range};
@@ -16,7 +18,7 @@ use super::frame::{LinkFrame, epsilons};
 use super::joint::MovingFrame;
 use super::joint_trajectory::JointTrajectory;
 use super::link_motion::LinkMotion;
-use super::robot::{LinkView, Skeleton};
+use super::robot::{LinkBalls, LinkView, Skeleton};
 use crate::Scene;
 use crate::half_space::Plane;
 use crate::motion::Bounds;
@@ -47,8 +49,10 @@ pub(super) struct Near<S> {
 #[derive(Clone, Debug, Default)]
 pub struct PathWorkspace<V: Vector> {
     pub(super) half_spaces: Vec<(usize, Plane<V>)>,
-    /// Bounds on the speed, acceleration and jerk of the link of each view along the edge.
+    /// Bounds on the speed, acceleration and jerk of each link along the edge, as the world sees it.
     bounds: Vec<Bounds<V::Scalar>>,
+    /// The region of each link in a part, as the world sees it, if pairs of links are looked at.
+    regions: Vec<SweptBall<V>>,
     /// How each joint moves in the middle of a part, as the world sees it.
     moving: Vec<MovingFrame<V>>,
     /// The views that are not known to be free, for each of the nested parts that are being looked at.
@@ -99,6 +103,7 @@ pub(super) struct Sweep<'s, V: Vector, E> {
 }
 
 /// The region that a ball of a link stays in during a part of an edge: the intersection of a ball and a box.
+#[derive(Clone, Copy, Debug)]
 struct SweptBall<V: Vector> {
     /// The centre of both: where the centre of the link's ball is in the middle of the part.
     center: V,
@@ -119,9 +124,8 @@ impl<'s, V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> Sweep<'s, V, 
         space.views.clear();
         space.views.extend(0..views);
         space.bounds.clear();
-        space
-            .bounds
-            .extend(self.skeleton.views.iter().map(|view| view.route.bounds(|column| self.edge.bounds(column))));
+        let of_links = &self.skeleton.views[..self.skeleton.links.len()];
+        space.bounds.extend(of_links.iter().map(|view| view.route.bounds(|column| self.edge.bounds(column))));
         self.visit([V::Scalar::ZERO, self.end], 0, 0..views, show)
     }
 
@@ -140,6 +144,16 @@ impl<'s, V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> Sweep<'s, V, 
         let is_last = depth == MAX_DEPTH || half == V::Scalar::ZERO || self.target == V::Scalar::infinity();
         self.place(from + half);
         self.parts += 1;
+        self.space.regions.clear();
+        // Pairs come after the links.
+        let links = self.skeleton.links.len();
+        if self.space.views[views.clone()].last().is_some_and(|&last| last >= links) {
+            for (link, LinkBalls { all, .. }) in self.skeleton.links.iter().enumerate() {
+                let (view, placed) = (&self.skeleton.views[link], self.placed(link));
+                let distance = view.route.distance(all.center);
+                self.space.regions.push(SweptBall::of(all, distance, &placed, &self.space.bounds[link], half));
+            }
+        }
         let rest = self.space.views.len();
         for at in views {
             let view = self.space.views[at];
@@ -160,7 +174,8 @@ impl<'s, V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> Sweep<'s, V, 
                 // A contact that was found earlier may have moved the end before it.
                 if near.from <= self.end {
                     let cut = Near { to: near.to.min(self.end), ..near };
-                    let (route, bounds) = (&self.skeleton.views[near.view].route, self.space.bounds[near.view]);
+                    let route = &self.skeleton.views[near.view].route;
+                    let bounds = route.bounds(|column| self.edge.bounds(column));
                     let motion = LinkMotion::new(route, self.edge, bounds, near.from);
                     self.end = self.end.min(show(&cut, motion, &mut self.target)?);
                 }
@@ -178,22 +193,32 @@ impl<'s, V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> Sweep<'s, V, 
         }
     }
 
+    /// How a link moves as the world sees it, in the middle of the part.
+    fn placed(&self, link: usize) -> (MovingFrame<V>, LinkFrame<V>) {
+        let route = &self.skeleton.views[link].route;
+        let moving = route.stages.last().map_or(MovingFrame::WORLD, |stage| self.space.moving[stage.column]);
+        (moving, moving.frame.then(&route.tail))
+    }
+
     /// Lists what is near a link in a part of the edge, body by body. If something is near, but the link moves so far
     /// that the part is to be halved, it lists nothing and returns `true`.
     fn is_coarse(&mut self, index: usize, [from, to]: [V::Scalar; 2], half: V::Scalar, is_last: bool) -> bool {
         let LinkView { link, base, ref route } = self.skeleton.views[index];
-        let (link, base) = (&self.skeleton.links[link], base.map(|base| &self.skeleton.links[base]));
-        let placed = match base {
-            Some(_) => route.place(self.edge, from + half),
-            None => {
-                let moving = route.stages.last().map_or(MovingFrame::WORLD, |stage| self.space.moving[stage.column]);
-                (moving, moving.frame.then(&route.tail))
-            }
-        };
-        let swept = |ball| SweptBall::of(ball, route.distance(ball.center), &placed, &self.space.bounds[index], half);
         let is_near = |reach: &SweptBall<V>, &BoundingSphere { center, radius }: &BoundingSphere<V>| {
             reach.meets_box(&Aabb { min: center, max: center }, radius + self.target)
         };
+        let (placed, bounds) = match base {
+            Some(base) => {
+                let [reach, SweptBall { center, radius, .. }] = [link, base].map(|link| self.space.regions[link]);
+                if !is_near(&reach, &BoundingSphere { center, radius }) {
+                    return false;
+                }
+                (route.place(self.edge, from + half), route.bounds(|column| self.edge.bounds(column)))
+            }
+            None => (self.placed(link), self.space.bounds[index]),
+        };
+        let (link, base) = (&self.skeleton.links[link], base.map(|base| &self.skeleton.links[base]));
+        let swept = |ball| SweptBall::of(ball, route.distance(ball.center), &placed, &bounds, half);
         let reach = swept(&link.all);
         let smaller = base.map_or(link.all.radius, |base| link.all.radius.min(base.all.radius));
         let is_coarse = !is_last && reach.drift > smaller * V::Scalar::from_f64(COARSE);
