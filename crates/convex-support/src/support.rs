@@ -121,9 +121,8 @@ pub trait SupportMap {
     /// [error](LineQuery::error) of the given one near the shape. `None`, as the provided method returns, if nothing is
     /// certain.
     ///
-    /// Algorithms trust it without a check. They call it in plain numbers first, rays for a
-    /// [quick](LineQuery::is_quick) answer before that. If the answer is `None`, they call it in [twice the
-    /// precision](LineQuery::is_close), and then they search.
+    /// Algorithms trust it without a check. They call it in plain numbers first. If the answer is `None`, they call it
+    /// in [twice the precision](LineQuery::is_close), and then they search.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>> {
         let _ = line;

@@ -56,7 +56,7 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
     ray: Ray<S::Vector>,
     options: RayCastOptions<S::Vector>,
 ) -> Result<RayCast<S::Vector>, RayCastError> {
-    match plainly(target, ray, &options, true) {
+    match plainly(target, ray, &options) {
         Some(answer) => Ok(answer),
         None => searched(target, ray.source, ray.direction, options, Observer::none()),
     }
@@ -73,32 +73,36 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     options: RayCastOptions<S::Vector>,
     mut observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
-    searched(target, ray.source, ray.direction, options, Observer::new(&mut observer))
+    let mut observer = Observer::new(&mut observer);
+    match plainly(target, ray, &options) {
+        Some(answer) => {
+            show(&answer, &mut Single::new(target), ray, &mut observer);
+            Ok(answer)
+        }
+        None => searched(target, ray.source, ray.direction, options, observer),
+    }
 }
 
-/// The cast by the certain crossing of the shape in plain numbers, if there is one; if `is_quick`, by the part of it
-/// that answers most rays from near the shape.
+/// The cast by the certain crossing of the shape in plain numbers, if there is one.
 ///
-/// The rest is left to [`searched`]: in the same function rays from afar made those from nearby take 15 % more
-/// instructions, and twice the precision made the answer go through memory. And the shape is called here, not by
-/// [`certain`]: through a closure rays at balls and cylinders took 4 % more.
+/// Twice the precision is left to [`searched`]: in the same function it made the answer go through memory, and rays
+/// at balls and boxes took 15 to 30 % more instructions. And the shape is called here, not by [`certain`]: through a
+/// closure rays at balls and cylinders took 4 % more.
 #[inline(always)]
 fn plainly<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,
     options: &RayCastOptions<S::Vector>,
-    is_quick: bool,
 ) -> Option<RayCast<S::Vector>> {
     if !is_plain(options) {
         return None;
     }
     let ray = ray.by_coordinates();
-    let line = LineQuery { is_quick, ..LineQuery::new(ray.source, ray.direction) };
-    certain(target.certain_crossing(line)?, ray, options)
+    certain(target.certain_crossing(LineQuery::new(ray.source, ray.direction))?, ray, options)
 }
 
-/// The cast if its answer is not quick. Each vector of the ray is passed by itself: of a ray that is written to memory
-/// in pieces and then read in others, the processor waits for the pieces.
+/// The cast if nothing is certain in plain numbers. Each vector of the ray is passed by itself: of a ray that is written
+/// to memory in pieces and then read in others, the processor waits for the pieces.
 #[inline(never)]
 fn searched<S: SupportMap + ?Sized>(
     target: &S,
@@ -108,10 +112,6 @@ fn searched<S: SupportMap + ?Sized>(
     mut observer: Observer<'_, S::Vector>,
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     let ray = Ray { source, direction };
-    if let Some(answer) = plainly(target, ray, &options, false) {
-        show(&answer, &mut Single::new(target), ray, &mut observer);
-        return Ok(answer);
-    }
     ray.check(&options)?;
     let mut body = Single::new(target);
     let known = certain_closely(&mut body, ray, Scalar::ZERO, &options, &mut observer);

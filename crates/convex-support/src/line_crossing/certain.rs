@@ -33,10 +33,6 @@ pub struct LineQuery<V: Vector> {
     /// Whether to compute in twice the precision: for the few lines for which the closed form in plain numbers is
     /// certain of nothing.
     pub is_close: bool,
-    /// Whether only a line from a source near the shape has to be answered, and only by the shortest of the shape's
-    /// closed forms. If nothing is certain then, the shape is to be asked again without this. So what most rays run is
-    /// short, and has no part of what takes lines from afar.
-    pub is_quick: bool,
 }
 
 impl<V: Vector> LineQuery<V> {
@@ -44,7 +40,7 @@ impl<V: Vector> LineQuery<V> {
     #[inline(always)]
     #[must_use]
     pub fn new(source: V, direction: V) -> Self {
-        Self { source, direction, radius: V::Scalar::ZERO, error: V::Scalar::ZERO, is_close: false, is_quick: false }
+        Self { source, direction, radius: V::Scalar::ZERO, error: V::Scalar::ZERO, is_close: false }
     }
 
     /// The line relative to a point that is the sum of two.
@@ -149,6 +145,8 @@ pub(crate) struct NearLine<V: Vector> {
     pub(super) size: V::Scalar,
     /// A bound on the error of the line's crossing, as a displacement of the line.
     pub(crate) error: V::Scalar,
+    /// Whether the point is the source itself, and the square of the direction is moderate.
+    pub(super) is_direct: bool,
 }
 
 /// A line that enters the infinite cylinder about a capsule beyond one of its ends.
@@ -182,10 +180,10 @@ impl<V: Vector> NearLine<V> {
     /// small or large to be squared.
     #[inline(always)]
     pub(crate) fn new(line: LineQuery<V>, origin: V, size: V::Scalar) -> Option<Self> {
-        if line.is_quick {
-            // A moderate square is that of a moderate length, and the closed forms need it.
-            let (near, is_near) = Self::seen::<false>(line, origin, size, line.direction.length_squared());
-            return is_near.then_some(near);
+        // A moderate square is that of a moderate length.
+        let (near, is_near) = Self::seen::<false>(line, origin, size, line.direction.length_squared());
+        if is_near {
+            return Some(Self { is_direct: true, ..near });
         }
         let length = sum_of_coordinates(line.direction);
         let (near, is_near) = Self::seen::<false>(line, origin, size, length);
@@ -228,7 +226,7 @@ impl<V: Vector> NearLine<V> {
         // is `u` of that.
         let far = V::Scalar::EPSILON * V::Scalar::EPSILON * sum_of_coordinates(seen);
         let rounding = if FAR { rounding + far } else { rounding };
-        (Self { base, source, direction, size, error: error + rounding }, is_near)
+        (Self { base, source, direction, size, error: error + rounding, is_direct: false }, is_near)
     }
 
     /// The same line from its point nearest the origin, to be turned.
@@ -259,7 +257,7 @@ impl<V: Vector> NearLine<V> {
         CertainCrossing::Enters { entry, bounds: [earliest - rounding, latest + rounding], normal }
     }
 
-    /// Whether a quick line without an error of its own clearly misses a ball about zero, told without a quotient or a
+    /// Whether a direct line without an error of its own clearly misses a ball about zero, told without a quotient or a
     /// root.
     ///
     /// `|x|²·d²` of the line's nearest point `x` is `s²·d² − (s·d)²`, right to 8ε of `s²·d²`. With a source no more than
@@ -274,38 +272,33 @@ impl<V: Vector> NearLine<V> {
         ss * dd - sd * sd > (rr + margin) * dd
     }
 
-    /// A ball about zero, for a line as it was asked about: most rays that miss a ball clearly miss it, and of a quick
-    /// line no other miss is told.
+    /// A ball about zero, for a line as it was asked about: most rays that miss a ball clearly miss it.
     #[inline(always)]
     pub(crate) fn swept_point(&self, asked: LineQuery<V>) -> Option<CertainCrossing<V>> {
-        let (radius, recip) = (asked.radius, self.direction.length_squared().recip());
-        if !(asked.is_quick & (asked.error == V::Scalar::ZERO)) {
-            return self.ball(radius);
-        }
-        let chord = super::ball::chord(radius, self.source, self.direction, recip);
-        if self.clearly_passes(radius) {
+        let chord = self.chord(asked.radius);
+        if self.is_direct & (asked.error == V::Scalar::ZERO) && self.clearly_passes(asked.radius) {
             return Some(CertainCrossing::Misses(chord.nearest));
         }
-        self.enters_ball(&chord, radius, recip)
+        self.ball(asked.radius)
+    }
+
+    #[inline(always)]
+    fn chord(&self, radius: V::Scalar) -> Chord<V> {
+        super::ball::chord(radius, self.source, self.direction, self.direction.length_squared().recip())
     }
 
     /// A ball about zero.
     #[inline(always)]
     pub(crate) fn ball(&self, radius: V::Scalar) -> Option<CertainCrossing<V>> {
-        let recip = self.direction.length_squared().recip();
-        let chord = super::ball::chord(radius, self.source, self.direction, recip);
-        if chord.is_past(radius, self.error, -V::Scalar::ZERO) {
-            return Some(CertainCrossing::Misses(chord.nearest));
+        let (chord, recip) = (self.chord(radius), self.direction.length_squared().recip());
+        if let Some(slack) = chord.slack(radius, self.error, recip, least_chord::<V::Scalar>()) {
+            let entry = chord.ends().0;
+            return Some(
+                self.enters([entry - slack, entry, entry + slack], chord.normal(radius, self.direction, recip)),
+            );
         }
-        self.enters_ball(&chord, radius, recip)
-    }
-
-    /// Where the line enters a ball about zero that cuts a chord out of it; `recip` is `1/|direction|²`.
-    #[inline(always)]
-    fn enters_ball(&self, chord: &Chord<V>, radius: V::Scalar, recip: V::Scalar) -> Option<CertainCrossing<V>> {
-        let slack = chord.slack(radius, self.error, recip, least_chord::<V::Scalar>())?;
-        let entry = chord.ends().0;
-        Some(self.enters([entry - slack, entry, entry + slack], chord.normal(radius, self.direction, recip)))
+        let is_past = chord.is_past(radius, self.error, -V::Scalar::ZERO);
+        is_past.then_some(CertainCrossing::Misses(chord.nearest))
     }
 
     /// A box about zero: the line is in all of its slabs, each smaller and larger by the error.
@@ -378,18 +371,23 @@ impl<V: Vector> NearLine<V> {
 
     /// A segment swept by a ball.
     #[inline(always)]
-    pub(crate) fn segment(&self, spine: &Spine<V>, asked: LineQuery<V>) -> Option<CertainCrossing<V>> {
-        let (line, radius) = (self.seen_along(spine), asked.radius);
+    pub(crate) fn segment(&self, spine: &Spine<V>, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        let line = self.seen_along(spine);
+        // Not `or_else`, whose closure the compiler may call.
         let known = line.capsule(spine, radius);
-        if asked.is_quick || known.is_some() {
-            return known;
-        }
+        if known.is_some() { known } else { line.segment_by_points(*spine, radius) }
+    }
+
+    /// The same for the few lines near a rim, by points before and behind the surface.
+    #[cold]
+    #[inline(never)]
+    fn segment_by_points(self, spine: Spine<V>, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let half_height = spine.half_height;
         let closest = |x: V| spine.axis * spine.split(x).0.max(-half_height).min(half_height);
         let support_value = |d: V| spine.split(d).0.abs() * half_height;
-        let crossed = Spine { middle: V::ZERO, ..*spine }.crossing(radius, line.source, line.direction);
+        let crossed = Spine { middle: V::ZERO, ..spine }.crossing(radius, self.source, self.direction);
         let longest = if spine.is_upright { self.longest_slack() } else { V::Scalar::infinity() };
-        line.swept(radius, closest, support_value, crossed, longest)
+        self.swept(radius, closest, support_value, crossed, longest)
     }
 
     /// A box swept by a ball.
@@ -719,18 +717,17 @@ mod tests {
             let line = LineQuery::<Vec3A>::new(source, direction).sweeping(radius);
             let s = source.as_dvec3();
             let off = (s - d * (s.dot(d) / d.dot(d))).length() - f64::from(radius);
-            let quick = NearLine::new(LineQuery { is_quick: true, ..line }, Vec3A::ZERO, radius);
-            if !quick.is_some_and(|near| near.clearly_passes(radius)) {
+            let near_line = NearLine::new(line, Vec3A::ZERO, radius).expect("numbers are moderate");
+            if !(near_line.is_direct && near_line.clearly_passes(radius)) {
                 assert!(off < 1e-3 || s.length() > 8.0 * f64::from(radius), "{off} {source} {direction}");
                 continue;
             }
             clear += 1;
             near += u32::from(off < 1e-4);
             assert!(off > 0.0, "{off} {source} {direction}");
-            let known = |line| NearLine::new(line, Vec3A::ZERO, radius)?.swept_point(line);
-            let by_chord = known(line);
+            let by_chord = near_line.ball(radius);
             assert!(matches!(by_chord, Some(CertainCrossing::Misses(_))), "{off} {source} {direction}");
-            assert_eq!(known(LineQuery { is_quick: true, ..line }), by_chord, "{off} {source} {direction}");
+            assert_eq!(near_line.swept_point(line), by_chord, "{off} {source} {direction}");
         }
         assert!(clear > 2000 && near > 100, "{clear} {near}");
     }

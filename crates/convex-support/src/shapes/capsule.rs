@@ -83,7 +83,7 @@ impl<V: Vector> SupportMap for Capsule<V> {
         }
         let line = line.sweeping(self.radius);
         let spine = Spine::upright(self.half_height);
-        NearLine::new(line, V::ZERO, self.half_height + line.radius)?.segment(&spine, line)
+        NearLine::new(line, V::ZERO, self.half_height + line.radius)?.segment(&spine, line.radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

@@ -87,7 +87,7 @@ impl<V: Vector> SupportMap for Segment<V> {
         }
         let ends = relative(self.points);
         let size = ends[0].length().max(ends[1].length()) + line.radius;
-        NearLine::new(line, middle(self.points), size)?.segment(&Spine::between(ends), line)
+        NearLine::new(line, middle(self.points), size)?.segment(&Spine::between(ends), line.radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

@@ -96,6 +96,7 @@ impl<S: Scalar> Lines<S> {
             direction: vector(&self.direction, line),
             size,
             error: self.near_error[line],
+            is_direct: false,
         }
     }
 

@@ -145,7 +145,7 @@ mod tests {
     use convex_support::glam::{DQuat, DVec3, Vec2};
     use convex_support::{Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Posed, Triangle};
 
-    use crate::shape::Shape;
+    use crate::pair::Shape;
     use crate::{DistanceOptions, SignedDistanceOptions, distance, signed_distance};
 
     /// A search from zero ends at a simplex with zero on one of its faces, or at a side of a needle that is thinner
