@@ -16,15 +16,15 @@ mod search;
 
 use alloc::vec::Vec;
 
+use self::node::{Node, Slot};
 use crate::{Aabb, Vector};
 
-pub use self::bound::{Bound, BoxDistance, CoarseBound, CoarseBoxDistance, CoarseSweptBox, SweptBox};
-pub use self::frame::{CoarseUnit, Frame};
-pub use self::nearest_pairs::NearestPairs;
-pub use self::node::{Boxes, WIDTH};
-use self::node::{Node, Slot};
-pub use self::outer_box::outer_box;
-pub use self::pairs::PairSearch;
+pub use bound::{Bound, BoxDistance, CoarseBound, CoarseBoxDistance, CoarseSweptBox, SweptBox};
+pub use frame::{CoarseUnit, Frame};
+pub use nearest_pairs::NearestPairs;
+pub use node::{Boxes, WIDTH};
+pub use outer_box::outer_box;
+pub use pairs::PairSearch;
 
 /// A tree over the boxes of items, which the caller names by numbers from 0 to 2³⁰ − 1.
 ///
