@@ -3,11 +3,11 @@
 //! The question is asked once more, of the same shapes with the same options, this time with an observer. Fields that
 //! begin with `_` choose what the format does not: `_sub_algorithm`, and `_search` for the search of a cast.
 
-use convex_support::{Point, SupportMap as _};
 #[cfg(not(feature = "space"))]
 use convex_support::glam::DVec2 as Vector;
 #[cfg(feature = "space")]
 use convex_support::glam::DVec3 as Vector;
+use convex_support::{Point, SupportMap as _};
 use gjk_raycast::{
     CastMethod, DistanceOptions, Iterate, LinearCastOptions, Motion, MotionCastOptions, MotionIterate, Outcome, Ray,
     RayCastOptions, RigidMotion, SignedDistanceOptions, Status, SubAlgorithm, distance, distance_with,

@@ -238,13 +238,7 @@ fn meet(thing: &Thing, rays: &[Ray<DVec3>], seen: &mut [Seen]) {
 }
 
 /// Whether the light reaches what each ray sees.
-fn shadows(
-    things: &[Thing],
-    rays: &[Ray<DVec3>],
-    seen: &[Seen],
-    light: DVec3,
-    radius: f64,
-) -> Vec<bool> {
+fn shadows(things: &[Thing], rays: &[Ray<DVec3>], seen: &[Seen], light: DVec3, radius: f64) -> Vec<bool> {
     let mut lit = vec![true; rays.len()];
     let facing: Vec<usize> =
         (0..rays.len()).filter(|&i| seen[i].lambda < f64::INFINITY && seen[i].normal.dot(light) > 0.0).collect();
