@@ -742,7 +742,8 @@ $('prove').addEventListener('click', () => {
 $('ask').addEventListener('click', () => {
   const text = $('line').value.trim();
   try {
-    const read = JSON.parse(text);
+    // What is too large for a number is said by the engine too.
+    const read = JSON.parse(text, (_, x) => { if (x === Infinity || x === -Infinity) throw x; return x; });
     if (read === null || typeof read !== 'object' || Array.isArray(read)) throw new Error('it must be an object');
     show(read);
   } catch {

@@ -160,7 +160,8 @@ export function bracket(steps, now, width) {
   });
   const y = shown.length * height + 10;
   out += `<path class="axis" d="M${left} ${y}H${width - right}"/>`;
-  for (const value of [low, high]) {
+  // Ends that read alike are one.
+  for (const value of short(low, 5) === short(high, 5) ? [(low + high) / 2] : [low, high]) {
     out += `<path class="axis" d="M${f(x(value))} ${y - 3}v6"/><text x="${f(x(value))}" y="${y + 18}" text-anchor="middle">${short(value, 5)}</text>`;
   }
   return { text: out, height: total };

@@ -3,11 +3,11 @@
 //! The question is asked once more, of the same shapes with the same options, this time with an observer. Fields that
 //! begin with `_` choose what the format does not: `_sub_algorithm`, and `_search` for the search of a cast.
 
-use convex_support::Point;
 #[cfg(not(feature = "space"))]
 use convex_support::glam::DVec2 as Vector;
 #[cfg(feature = "space")]
 use convex_support::glam::DVec3 as Vector;
+use convex_support::{Point, SupportMap as _};
 use gjk_raycast::{
     CastMethod, DistanceOptions, Iterate, LinearCastOptions, Motion, MotionCastOptions, MotionIterate, Outcome, Ray,
     RayCastOptions, RigidMotion, SignedDistanceOptions, Status, SubAlgorithm, distance, distance_with,
@@ -115,7 +115,8 @@ impl<'q, V: Space<Scalar = f64>> Asked<'q, V> {
         let mut options = DistanceOptions::new().with_sub_algorithm(self.sub_algorithm());
         options.tolerance = self.number("tol").unwrap_or(options.tolerance);
         let mut seen = Vec::new();
-        let d = distance_with(a, b, options, |iterate| seen.push(of_difference(iterate)));
+        let radii = a.core().radius + b.core().radius;
+        let d = distance_with(a, b, options, |iterate| seen.push(of_difference(iterate, radii, 0.0)));
         Some(told(seen, d.distance, [d.lower, d.upper], d.status, d.iterations))
     }
 
@@ -124,7 +125,9 @@ impl<'q, V: Space<Scalar = f64>> Asked<'q, V> {
         let mut options = SignedDistanceOptions::new();
         options.tolerance = self.number("tol").unwrap_or(options.tolerance);
         let mut seen = Vec::new();
-        let d = signed_distance_with(a, b, options, |iterate| seen.push(of_difference(iterate)));
+        let radii = a.core().radius + b.core().radius;
+        let least = f64::NEG_INFINITY;
+        let d = signed_distance_with(a, b, options, |iterate| seen.push(of_difference(iterate, radii, least)));
         Some(told(seen, d.signed_distance, [d.lower, d.upper], d.status, d.iterations))
     }
 
@@ -221,9 +224,11 @@ fn told(seen: Vec<Value>, value: f64, [lower, upper]: [f64; 2], status: Status, 
     })
 }
 
-/// An iterate of a search for zero among the points of the difference, in the units of the world.
-fn of_difference<V: Space<Scalar = f64>>(iterate: Iterate<'_, V>) -> Value {
-    drawn(iterate, |p| p)
+/// An iterate of a search for zero among the points of the difference, in the units of the world. Its bounds are those
+/// of the cores, and bodies are nearer by their radii.
+fn of_difference<V: Space<Scalar = f64>>(iterate: Iterate<'_, V>, radii: f64, least: f64) -> Value {
+    let [lower, upper] = [iterate.lower, iterate.upper].map(|of_cores| (of_cores - radii).max(least));
+    drawn(Iterate { lower, upper, ..iterate }, |p| p)
 }
 
 /// An iterate of a cast, whose points are `x − p` for the points `p` of the target; x is where the ray is at the lower

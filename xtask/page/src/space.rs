@@ -179,14 +179,14 @@ pub(crate) fn picture(query: &Object, meshes: &Meshes) -> Vec<u8> {
     let mut pixels = Vec::with_capacity(width * height * 4);
     for first in (0..width * height).step_by(ROW) {
         let rays: Vec<_> = (first..(first + ROW).min(width * height)).map(ray).collect();
-        let mut seen = vec![(f64::INFINITY, DVec3::ZERO, DVec3::ZERO); rays.len()];
+        let mut seen = vec![Seen::NOTHING; rays.len()];
         for thing in &things {
             meet(thing, &rays, &mut seen);
         }
         let lit = shadows(&things, &rays, &seen, light, radius);
-        for ((ray, (lambda, normal, colour)), lit) in rays.iter().zip(seen).zip(lit) {
-            pixels.extend(if lambda < f64::INFINITY {
-                shade(ray.direction, normal, colour, light, lit)
+        for ((ray, seen), lit) in rays.iter().zip(seen).zip(lit) {
+            pixels.extend(if seen.lambda < f64::INFINITY {
+                shade(ray.direction, seen.normal, seen.mixed(), light, lit)
             } else {
                 [0; 4]
             });
@@ -195,8 +195,27 @@ pub(crate) fn picture(query: &Object, meshes: &Meshes) -> Vec<u8> {
     pixels
 }
 
+/// What a ray sees.
+#[derive(Clone, Copy)]
+struct Seen {
+    lambda: f64,
+    normal: DVec3,
+    colour: DVec3,
+    /// The colour of something else behind it, or within.
+    hidden: Option<DVec3>,
+}
+
+impl Seen {
+    const NOTHING: Self = Self { lambda: f64::INFINITY, normal: DVec3::ZERO, colour: DVec3::ZERO, hidden: None };
+
+    /// What is hidden shines through, so that a body within another is seen.
+    fn mixed(self) -> DVec3 {
+        self.hidden.map_or(self.colour, |hidden| self.colour.lerp(hidden, 0.3))
+    }
+}
+
 /// Casts the rays that pass through the ball around a thing, and keeps what is nearest.
-fn meet(thing: &Thing, rays: &[Ray<DVec3>], seen: &mut [(f64, DVec3, DVec3)]) {
+fn meet(thing: &Thing, rays: &[Ray<DVec3>], seen: &mut [Seen]) {
     let near = |ray: &Ray<DVec3>| {
         let to = thing.center - ray.source;
         let along = to.dot(ray.direction) / ray.direction.length_squared();
@@ -207,33 +226,31 @@ fn meet(thing: &Thing, rays: &[Ray<DVec3>], seen: &mut [(f64, DVec3, DVec3)]) {
     let mut entries = vec![RayEntry::default(); asked.len()];
     thing.enter(&asked, &mut entries);
     for (&i, entry) in chosen.iter().zip(&entries) {
+        let before = seen[i];
         // NaN is not nearer.
-        if entry.lambda < seen[i].0 {
-            seen[i] = (entry.lambda, entry.normal, thing.colour);
+        if entry.lambda < before.lambda {
+            let hidden = if before.lambda < f64::INFINITY { Some(before.colour) } else { None };
+            seen[i] = Seen { lambda: entry.lambda, normal: entry.normal, colour: thing.colour, hidden };
+        } else if entry.lambda < f64::INFINITY {
+            seen[i].hidden = Some(thing.colour);
         }
     }
 }
 
 /// Whether the light reaches what each ray sees.
-fn shadows(
-    things: &[Thing],
-    rays: &[Ray<DVec3>],
-    seen: &[(f64, DVec3, DVec3)],
-    light: DVec3,
-    radius: f64,
-) -> Vec<bool> {
+fn shadows(things: &[Thing], rays: &[Ray<DVec3>], seen: &[Seen], light: DVec3, radius: f64) -> Vec<bool> {
     let mut lit = vec![true; rays.len()];
     let facing: Vec<usize> =
-        (0..rays.len()).filter(|&i| seen[i].0 < f64::INFINITY && seen[i].1.dot(light) > 0.0).collect();
+        (0..rays.len()).filter(|&i| seen[i].lambda < f64::INFINITY && seen[i].normal.dot(light) > 0.0).collect();
     // Off the surface, so that it does not shade itself.
-    let from = |i: usize| rays[i].at(seen[i].0) + seen[i].1 * (1e-4 * radius);
+    let from = |i: usize| rays[i].at(seen[i].lambda) + seen[i].normal * (1e-4 * radius);
     let rays: Vec<_> = facing.iter().map(|&i| Ray { source: from(i), direction: light }).collect();
-    let mut hits = vec![(f64::INFINITY, DVec3::ZERO, DVec3::ZERO); rays.len()];
+    let mut hits = vec![Seen::NOTHING; rays.len()];
     for thing in things {
         meet(thing, &rays, &mut hits);
     }
-    for (&i, (lambda, ..)) in facing.iter().zip(&hits) {
-        lit[i] = *lambda == f64::INFINITY;
+    for (&i, hit) in facing.iter().zip(&hits) {
+        lit[i] = hit.lambda == f64::INFINITY;
     }
     lit
 }

@@ -206,6 +206,7 @@ await test('bad input is answered by a sentence', async () => {
   const disc = (x) => `{"type":"posed","translation":[${x},0],"of":{"type":"ball","radius":1}}`;
   for (const [line, due] of [
     [`{"query":"distance","a":${disc('NaN')},"b":${disc(3)}}`, /There is no answer: .*column/],
+    [`{"query":"distance","a":${disc('1e999')},"b":${disc(3)}}`, /There is no answer: .*translation.*out of range/],
     [`{"query":"distance","a":${disc(0)},"b":{"type":"ball","radius":-1}}`, /There is no answer: .*radius/],
     [`{"query":"distance","a":${disc(0)},"b":${disc(0)}}`, /overlap or touch/],
     [`{"query":"signed_distance","a":${disc(0)},"b":${disc(0)}}`, /2 deep/],
@@ -214,6 +215,23 @@ await test('bad input is answered by a sentence', async () => {
     ['hello', /There is no answer: the line is not JSON/],
     [`{"query":"distance","a":${disc(1e308)},"b":${disc(-1e308)}}`, /There is no answer|The distance is/],
   ]) assert.match(await asked(line), due, line);
+  await page.context().close();
+});
+
+await test('steps of round bodies have the brackets of the bodies, and ends that read alike have one label', async () => {
+  const page = await open();
+  const at = (x, of) => `{"type":"posed","translation":[${x},0],"of":${of}}`;
+  const disc = '{"type":"ball","radius":1}', box = '{"type":"cuboid","half_extents":[1,1]}';
+  for (const [line, label] of [
+    [`{"query":"distance","a":${at(0, disc)},"b":${at(3.1, disc)}}`, '1.1'],
+    [`{"query":"signed_distance","a":${at(0, disc)},"b":${at(3.1, disc)}}`, '1.1'],
+    [`{"query":"signed_distance","a":${at(0, box)},"b":${at(1.1, box)}}`, '−0.9'],
+  ]) {
+    await page.locator('#line').fill(line);
+    await page.locator('#ask').click();
+    await settled(page);
+    assert.deepEqual(await page.locator('#bracket text[text-anchor=middle]').allTextContents(), [label], line);
+  }
   await page.context().close();
 });
 
