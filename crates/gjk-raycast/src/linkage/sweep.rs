@@ -175,7 +175,8 @@ impl<'s, V: Vector, E: JointTrajectory<Scalar = V::Scalar> + Copy> Sweep<'s, V, 
                 if near.from <= self.end {
                     let cut = Near { to: near.to.min(self.end), ..near };
                     let route = &self.skeleton.views[near.view].route;
-                    let bounds = route.bounds(|column| self.edge.bounds(column));
+                    let known = self.space.bounds.get(near.view).copied();
+                    let bounds = known.unwrap_or_else(|| route.bounds(|column| self.edge.bounds(column)));
                     let motion = LinkMotion::new(route, self.edge, bounds, near.from);
                     self.end = self.end.min(show(&cut, motion, &mut self.target)?);
                 }
