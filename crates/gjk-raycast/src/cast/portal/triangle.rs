@@ -58,27 +58,31 @@ pub(super) fn triangle<V: Vector>(
         };
     }
     let mut planes = NewestPlanes { frame, alpha: best.alpha, best, tilt };
-    let mut q = planes.opposite(bracket, &p)?;
-    let mut portal = if tilt < Scalar::ONE { mixed(frame, &p, &q) } else { None };
-    if portal.is_none() {
-        // Pieces found by planes so near one another determine the next plane before the line is enclosed.
-        if p.alpha.is_some() && tilt <= V::Scalar::from_f64(SAME_TILT) && bracket.is_curved {
-            match sqp(bracket, frame, OnLine::unknown([p, p, q]), planes.best, tilt) {
-                Err(Stop::InDoubt) => {}
-                found => return found,
-            }
-        }
-        portal = planes.enclose(bracket, &mut p, &mut q)?;
+    let q = planes.opposite(bracket, &p)?;
+    // In one place from here on: copies of it would wait until all of it is in the cache.
+    let mut portal = Triangle { corners: [p, q, q], weights: [Scalar::ZERO; 3], turn: Scalar::ONE };
+    if tilt < Scalar::ONE
+        && let Some(mut found) = mixed(frame, &p, &q)
+    {
+        return planes.shrink(bracket, &mut found);
     }
-    match portal {
-        Some(found) => planes.shrink(bracket, found),
-        // The line passes near the outline of the body, too near to be enclosed by points; but it may run through an
-        // edge or a smooth piece.
-        None if planes.best.is_known() && frame.is_curved(bracket, frame.normal(planes.best.alpha.plane())) => {
-            sqp(bracket, frame, OnLine::unknown([p, q, q]), planes.best, tilt)
+    // Pieces found by planes so near one another determine the next plane before the line is enclosed.
+    if p.alpha.is_some() && tilt <= V::Scalar::from_f64(SAME_TILT) && bracket.is_curved {
+        match sqp(bracket, frame, OnLine::unknown([p, p, q]), planes.best, tilt) {
+            Err(Stop::InDoubt) => {}
+            found => return found,
         }
-        None => Err(Stop::InDoubt),
     }
+    if planes.enclose(bracket, &mut portal)? {
+        return planes.shrink(bracket, &mut portal);
+    }
+    // The line passes near the outline of the body, too near to be enclosed by points; but it may run through an edge
+    // or a smooth piece.
+    if planes.best.is_known() && frame.is_curved(bracket, frame.normal(planes.best.alpha.plane())) {
+        let [p, q, _] = portal.corners;
+        return sqp(bracket, frame, OnLine::unknown([p, q, q]), planes.best, tilt);
+    }
+    Err(Stop::InDoubt)
 }
 
 /// The planes of the search: the last, the best, and how far the next one is tilted towards the line.
@@ -152,17 +156,13 @@ impl<V: Vector> NewestPlanes<'_, V> {
         self.support_toward(bracket, plane, toward)
     }
 
-    /// A third point such that the triangle contains zero. `None` after too many others.
+    /// Finds a third corner such that the triangle contains zero. `false` after too many others.
     #[inline(always)]
-    fn enclose(
-        &mut self,
-        bracket: &mut Bracket<'_, V>,
-        p: &mut RayPoint<V>,
-        q: &mut RayPoint<V>,
-    ) -> Result<Option<Triangle<V>>, Stop<V>> {
+    fn enclose(&mut self, bracket: &mut Bracket<'_, V>, portal: &mut Triangle<V>) -> Result<bool, Stop<V>> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let most = if bracket.is_curved { MAX_OUTSIDE / 2 } else { MAX_OUTSIDE };
         for _ in 0..most {
+            let [p, q, _] = &portal.corners;
             let area = p.cross(q);
             let turn = one.copysign(area);
             let ((du, dv), dt) = p.edge_to(q);
@@ -176,17 +176,18 @@ impl<V: Vector> NewestPlanes<'_, V> {
             let s = self.support_toward(bracket, plane, toward)?;
             let weights = [q.cross(&s) * turn, s.cross(p) * turn, area.abs()];
             if weights[0] >= zero && weights[1] >= zero {
-                return Ok(Some(Triangle { corners: [*p, *q, s], weights, turn }));
+                (portal.corners[2], portal.weights, portal.turn) = (s, weights, turn);
+                return Ok(true);
             }
-            *(if weights[0] < weights[1] { &mut *p } else { &mut *q }) = s;
+            portal.corners[if weights[0] < weights[1] { 0 } else { 1 }] = s;
         }
-        Ok(None)
+        Ok(false)
     }
 
     /// Brings the portal nearer until the bracket closes between the best plane, at its own cosine, and the portal. A
     /// function of its own, since together with the search for a portal it runs out of registers.
     #[inline(never)]
-    fn shrink(&mut self, bracket: &mut Bracket<'_, V>, mut portal: Triangle<V>) -> Result<RayContact<V>, Stop<V>> {
+    fn shrink(&mut self, bracket: &mut Bracket<'_, V>, portal: &mut Triangle<V>) -> Result<RayContact<V>, Stop<V>> {
         let tolerance = bracket.tolerance();
         bracket.around = Some(portal.corners.map(|p| p.point));
         let mut last = V::Scalar::infinity();
