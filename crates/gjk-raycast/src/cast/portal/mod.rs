@@ -40,12 +40,12 @@ pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayConta
     // far the next one is tilted.
     let told = bracket.options.warm_start.and_then(|warm| Some((warm.axis.unit()?, tilt(bracket, warm.error()))));
     let (first, tilt) = told.unwrap_or_else(|| (bracket.x(), Scalar::ONE));
-    let core = RayFrame::new(bracket.line());
-    let curved = core.is_curved(bracket, first);
+    let mut frame = RayFrame::new(bracket.line());
+    let curved = frame.is_curved(bracket, first);
     if !curved && bracket.radius > Scalar::ZERO {
-        return rounded(bracket, &core, first, tilt);
+        return rounded(bracket, &frame, first, tilt);
     }
-    let mut frame = RayFrame { radius: bracket.radius, ..core };
+    frame.radius = bracket.radius;
     let mut seen = None;
     if curved {
         match smooth(bracket, &frame, first, tilt < Scalar::ONE, &mut seen) {
