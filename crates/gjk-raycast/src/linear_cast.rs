@@ -282,35 +282,49 @@ compiled_once! {
 /// The answer of a cast about two shapes.
 fn answer<V: Vector>(
     cast: &ObstacleCast<V>,
-    [a, b]: [Shape<'_, V>; 2],
+    shapes: [Shape<'_, V>; 2],
     cores: &[Core<V>; 2],
     motion: Motion<V>,
     options: &LinearCastOptions<V>,
 ) -> LinearCast<V> {
-    let zero = V::Scalar::ZERO;
-    let target = options.target_distance.max(zero);
     let outcome = match &cast.outcome {
         Outcome::Hit(hit) => Outcome::Hit(hit_on_the_way(hit, cast.scale, cores, motion.velocity_b)),
         Outcome::Miss(miss) => Outcome::Miss(Miss { axis: -miss.axis }),
         Outcome::Undecided => Outcome::Undecided,
     };
     let &ObstacleCast { lower, upper, status, iterations, .. } = cast;
-    let mut answer = LinearCast { outcome, lower, upper, status, iterations };
+    let answer = LinearCast { outcome, lower, upper, status, iterations };
+    let time = match answer.outcome {
+        Outcome::Hit(Impact { time, normal: None, .. }) => time,
+        _ => V::Scalar::infinity(),
+    };
+    if time == V::Scalar::ZERO || options.start_in_contact == StartInContact::IfDeeper {
+        return look_at_start(answer, shapes, cores, motion, options);
+    }
+    LinearCast { status: status.of(&answer.outcome, answer.is_certain()), ..answer }
+}
+
+/// The answer where the bodies overlap at the start, or only a motion that goes deeper counts, given the plain answer.
+/// A function of its own, for which alone an answer has to be in memory before it is returned.
+#[cold]
+#[inline(never)]
+fn look_at_start<V: Vector>(
+    mut answer: LinearCast<V>,
+    [a, b]: [Shape<'_, V>; 2],
+    cores: &[Core<V>; 2],
+    motion: Motion<V>,
+    options: &LinearCastOptions<V>,
+) -> LinearCast<V> {
     let (velocities, axis) = ([motion.velocity_a, motion.velocity_b], options.warm_start.map(|warm| warm.axis));
     let &LinearCastOptions { max_iterations, sub_algorithm, .. } = options;
-    let mut start = StartingPair { a, b, velocities, target, slack: zero, axis, max_iterations, sub_algorithm };
-    // The bodies overlap at the start, and any contact counts. `only_if_deeper` measures the start for itself.
-    if let Outcome::Hit(Impact { time, normal: None, .. }) = answer.outcome
-        && time == zero
-        && options.start_in_contact == StartInContact::Report
-        && let Some(rare) = options.rare.0
-    {
-        start.slack = rounding_of_places(cores);
-        (rare.touch)(&start, &mut answer);
-    }
+    let (target, slack) = (options.target_distance.max(Scalar::ZERO), rounding_of_places(cores));
+    let start = StartingPair { a, b, velocities, target, slack, axis, max_iterations, sub_algorithm };
     if options.start_in_contact == StartInContact::IfDeeper {
-        start.slack = rounding_of_places(cores);
+        // It measures the start for itself.
         only_if_deeper(&mut answer, &start, options);
+    } else if let Some(rare) = options.rare.0 {
+        // Any contact counts.
+        (rare.touch)(&start, &mut answer);
     }
     answer.status = answer.status.of(&answer.outcome, answer.is_certain());
     answer
