@@ -3,7 +3,7 @@
 
 use alloc::vec::Vec;
 
-use convex_support::{Point, Scalar as _, ScalarOf, SupportMap, Vector};
+use convex_support::{Point, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::among::Among;
@@ -42,7 +42,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: SignedDistanceOptions<S::Vector>,
         contacts: &mut Vec<BodyContact<S::Vector>>,
     ) -> Work {
-        let work = self.near(shape, of_boxes::<S>(within), reuse(contacts), |Id { body: index, member }, body| {
+        let work = self.near(shape, of_boxes(within), reuse(contacts), |Id { body: index, member }, body| {
             let contact = asked!(body, body => body.contact(shape, within, options))?;
             Some(BodyContact { body: index, member, contact })
         });
@@ -76,7 +76,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: SignedDistanceOptions<S::Vector>,
         contacts: &mut Vec<PairContact<S::Vector>>,
     ) -> Work {
-        Pairing::within(*self).find(of_boxes::<S>(within), &self.contact_within(within, options), contacts)
+        Pairing::within(*self).find(&ContactWithin { within, options, last: self.last }, contacts)
     }
 
     /// Finds the contacts of all pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than
@@ -88,7 +88,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: SignedDistanceOptions<S::Vector>,
         contacts: &mut Vec<PairContact<S::Vector>>,
     ) -> Work {
-        Pairing::between(*self, other).find(of_boxes::<S>(within), &self.contact_within(within, options), contacts)
+        Pairing::between(*self, other).find(&ContactWithin { within, options, last: self.last }, contacts)
     }
 
     /// [`contacts_within`](Self::contacts_within) on all threads of the current [rayon](https://docs.rs/rayon) pool,
@@ -104,21 +104,13 @@ impl<S: SupportMap> Among<'_, S> {
     where
         S: Sync,
     {
-        Pairing::within(*self).par_find(of_boxes::<S>(within), &self.contact_within(within, options), contacts)
-    }
-
-    fn contact_within(
-        &self,
-        within: ScalarOf<S>,
-        options: SignedDistanceOptions<S::Vector>,
-    ) -> ContactWithin<'_, S::Vector> {
-        ContactWithin { within, options, last: self.last }
+        Pairing::within(*self).par_find(&ContactWithin { within, options, last: self.last }, contacts)
     }
 }
 
 /// The limit for the distance of boxes. Boxes have no depth, so that a negative `within` becomes zero.
-fn of_boxes<S: SupportMap>(within: ScalarOf<S>) -> ScalarOf<S> {
-    within.max(ScalarOf::<S>::ZERO)
+fn of_boxes<N: Scalar>(within: N) -> N {
+    within.max(N::ZERO)
 }
 
 /// The query for the contact of two bodies, if they are no farther than `within` from each other.
@@ -131,6 +123,10 @@ struct ContactWithin<'l, V: Vector> {
 
 impl<V: Vector> AskPair<V> for ContactWithin<'_, V> {
     type Answer = PairContact<V>;
+
+    fn within(&self) -> V::Scalar {
+        of_boxes(self.within)
+    }
 
     fn ask<S: SupportMap<Vector = V>, T: SupportMap<Vector = V>>(
         &self,

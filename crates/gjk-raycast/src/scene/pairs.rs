@@ -24,7 +24,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: DistanceOptions<S::Vector>,
         pairs: &mut Vec<PairDistance<S::Vector>>,
     ) -> Work {
-        Pairing::within(*self).find(within, &options.with_limit(within), pairs)
+        Pairing::within(*self).find(&options.with_limit(within), pairs)
     }
 
     /// Finds all pairs of one of these bodies, `a`, and any of another scene, `b`, that are no farther than `within`
@@ -36,7 +36,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: DistanceOptions<S::Vector>,
         pairs: &mut Vec<PairDistance<S::Vector>>,
     ) -> Work {
-        Pairing::between(*self, other).find(within, &options.with_limit(within), pairs)
+        Pairing::between(*self, other).find(&options.with_limit(within), pairs)
     }
 
     /// [`pairs_within`](Self::pairs_within) on all threads of the current [rayon](https://docs.rs/rayon) pool, with the
@@ -51,7 +51,7 @@ impl<S: SupportMap> Among<'_, S> {
     where
         S: Sync,
     {
-        Pairing::within(*self).par_find(within, &options.with_limit(within), pairs)
+        Pairing::within(*self).par_find(&options.with_limit(within), pairs)
     }
 }
 
@@ -107,15 +107,10 @@ impl<'s, S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'s, S, T> {
         Self { a: all, b: other.all(), same: false, work: Work::default() }
     }
 
-    /// Collects the answers of a single query for the pairs whose boxes are no farther than `within` from each other.
-    pub(super) fn find<Q: AskPair<S::Vector>>(
-        mut self,
-        within: ScalarOf<S>,
-        query: &Q,
-        pairs: &mut Vec<Q::Answer>,
-    ) -> Work {
-        let mut found = Found { within, query, pairs: reuse(pairs) };
-        self.search(self.boxes_within(within), &mut found);
+    /// Collects the answers of a single query for the pairs whose boxes are near enough.
+    pub(super) fn find<Q: AskPair<S::Vector>>(mut self, query: &Q, pairs: &mut Vec<Q::Answer>) -> Work {
+        let mut found = Found { query, pairs: reuse(pairs) };
+        self.search(self.boxes_within(query.within()), &mut found);
         self.end(found)
     }
 
@@ -123,7 +118,6 @@ impl<'s, S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'s, S, T> {
     #[cfg(feature = "rayon")]
     pub(super) fn par_find<Q: AskPair<S::Vector, Answer: Send> + Sync>(
         mut self,
-        within: ScalarOf<S>,
         query: &Q,
         pairs: &mut Vec<Q::Answer>,
     ) -> Work
@@ -136,11 +130,11 @@ impl<'s, S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'s, S, T> {
         const PIECES: usize = 256;
         let search = |piece| {
             let (mut part, mut pairs) = (self, Vec::new());
-            part.search(piece, &mut Found { within, query, pairs: &mut pairs });
+            part.search(piece, &mut Found { query, pairs: &mut pairs });
             (part.work, pairs)
         };
-        let parts: Vec<_> = self.boxes_within(within).split(PIECES).into_par_iter().map(search).collect();
-        let found = Found { within, query, pairs: reuse(pairs) };
+        let parts: Vec<_> = self.boxes_within(query.within()).split(PIECES).into_par_iter().map(search).collect();
+        let found = Found { query, pairs: reuse(pairs) };
         for (work, pairs) in parts {
             found.pairs.extend(pairs);
             self.count(work);
@@ -156,7 +150,7 @@ impl<'s, S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'s, S, T> {
 
     /// Tests the bodies that are near half-spaces, sorts the pairs, and counts those that were left out.
     fn end<Q: AskPair<S::Vector>>(mut self, mut found: Found<'_, S::Vector, Q>) -> Work {
-        let within = found.within;
+        let within = found.query.within();
         for of in self.half_spaces() {
             let ask = |other| self.ask(of.pair(other), Scalar::ZERO, &|_| of.height, &mut found);
             let nodes = of.others.within(&of.height, within, ask);
@@ -290,6 +284,9 @@ pub(super) fn beside_box<V: Vector>(around: Option<Aabb<V>>) -> BoxDistance<V> {
 pub(super) trait AskPair<V: Vector> {
     type Answer: OfPair;
 
+    /// How far apart boxes may be, which is not negative if bodies can be near enough at all.
+    fn within(&self) -> V::Scalar;
+
     /// The answer for two bodies, if they are near enough; `None` for two half-spaces.
     fn ask<S: SupportMap<Vector = V>, T: SupportMap<Vector = V>>(
         &self,
@@ -301,7 +298,6 @@ pub(super) trait AskPair<V: Vector> {
 
 /// The pairs found so far.
 struct Found<'p, V: Vector, Q: AskPair<V>> {
-    within: V::Scalar,
     query: &'p Q,
     pairs: &'p mut Vec<Q::Answer>,
 }
@@ -310,7 +306,7 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>, Q: AskPair<S::Vector>> Te
     for Found<'_, S::Vector, Q>
 {
     fn limit(&self) -> Limit<ScalarOf<S>> {
-        up_to(self.within)
+        up_to(self.query.within())
     }
 
     #[inline]
@@ -347,6 +343,10 @@ fn each_pair<S: SupportMap, T: SupportMap<Vector = S::Vector>, Q: Question<S::Ve
 /// The distance, if it is within the limit.
 impl<V: Vector> AskPair<V> for DistanceOptions<V> {
     type Answer = PairDistance<V>;
+
+    fn within(&self) -> V::Scalar {
+        self.limit
+    }
 
     fn ask<S: SupportMap<Vector = V>, T: SupportMap<Vector = V>>(
         &self,
