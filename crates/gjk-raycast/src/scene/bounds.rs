@@ -122,8 +122,7 @@ impl<V: Vector> MovingBalls<V> {
             let reach = V::splat(ball.radius);
             swept(Aabb { min: ball.start - reach, max: ball.start + reach }, ball.velocity, duration)
         };
-        let both = |a: Aabb<V>, b: Aabb<V>| Aabb { min: a.min.min(b.min), max: a.max.max(b.max) };
-        Self::parts(shape, motion, options).map(around).reduce(both).unwrap_or_else(Aabb::everything)
+        Self::parts(shape, motion, options).map(around).reduce(|a, b| a.union(&b)).unwrap_or_else(Aabb::everything)
     }
 
     /// When each part begins, how long it lasts, and its ball.

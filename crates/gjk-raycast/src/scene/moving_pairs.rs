@@ -126,9 +126,10 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> MovingPairs<'_, '_, S, T>
     ) -> Result<SceneFirstContact<S::Vector>, RayCastError> {
         let candidates = self.candidates()?;
         let (mut found, mut refused, mut work) = (First::default(), None, self.pairing.work);
-        let (end, is_all) = (self.options.max_time, all.is_some());
+        let (end, is_all) = (up_to(self.options.max_time), all.is_some());
+        let limit = |found: &First<_, _, _>| if is_all { end } else { found.limit(end) };
         for (from, pair) in candidates {
-            if !is_all && (from, pair.map(Id::of)) > found.limit(up_to(end)) {
+            if (from, pair.map(Id::of)) > limit(&found) {
                 break;
             }
             let ended = self.each(pair, from, &mut |pair, from, a, b| {
@@ -150,7 +151,7 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> MovingPairs<'_, '_, S, T>
                     }
                     None => {}
                 }
-                ControlFlow::Continue(if is_all { end } else { found.limit(up_to(end)).0 })
+                ControlFlow::Continue(limit(&found).0)
             });
             if ended.is_break() {
                 break;

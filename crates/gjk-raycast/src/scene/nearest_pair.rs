@@ -113,25 +113,27 @@ impl<S: SupportMap> Among<'_, S> {
 
 impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'_, S, T> {
     /// Tests the pairs whose bound may be below the limit, those with half-spaces first.
-    fn all_in_order(&mut self, boxes: NearestPairs<'_, S::Vector>, question: &mut impl TestPair<S, T>) {
-        // The search is over, so a break no longer matters.
-        let _ = self.half_spaces_in_order(question).map_continue(|()| self.in_order(boxes, question));
-    }
-
-    /// Tests the pairs of bounded bodies whose bound may be below the limit, mostly in the order of their bounds.
-    fn in_order(
-        &mut self,
-        mut boxes: NearestPairs<'_, S::Vector>,
-        question: &mut impl TestPair<S, T>,
-    ) -> ControlFlow<()> {
-        let mut ended = ControlFlow::Continue(());
-        while ended.is_continue()
-            && let Some((pair, from)) = boxes.next(question.limit().0)
-        {
-            ended = self.ask(pair, from, &beside_box, question);
+    fn all_in_order(&mut self, mut boxes: NearestPairs<'_, S::Vector>, question: &mut impl TestPair<S, T>) {
+        if self.half_spaces_in_order(question).is_continue() {
+            // The search is over, so a break no longer matters.
+            let _ = self.in_order(&mut boxes, usize::MAX, question);
         }
         self.work.nodes += boxes.nodes();
-        ended
+    }
+
+    /// Tests pairs of bounded bodies whose bound may be below the limit, mostly in the order of their bounds, and not
+    /// more than `most`. The nodes are those of `boxes`.
+    fn in_order(
+        &mut self,
+        boxes: &mut NearestPairs<'_, S::Vector>,
+        most: usize,
+        question: &mut impl TestPair<S, T>,
+    ) -> ControlFlow<()> {
+        for _ in 0..most {
+            let Some((pair, from)) = boxes.next(question.limit().0) else { break };
+            self.ask(pair, from, &beside_box, question)?;
+        }
+        ControlFlow::Continue(())
     }
 
     /// Tests the pairs with half-spaces in the same way.
@@ -166,12 +168,7 @@ impl<V: Vector> Nearest<V> {
         Self { pair: None, limit: up_to(end), lower: end, options }
     }
 
-    fn answer<S, T>(self, pairing: Pairing<'_, S, T>) -> ScenePair<V>
-    where
-        S: SupportMap<Vector = V>,
-        T: SupportMap<Vector = V>,
-    {
-        let work = pairing.finish();
+    fn answer(self, work: Work) -> ScenePair<V> {
         ScenePair { nearest: self.pair, lower: if work.cancelled { Scalar::ZERO } else { self.lower }, work }
     }
 }
@@ -201,7 +198,7 @@ fn least<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
 ) -> ScenePair<S::Vector> {
     let mut nearest = Nearest::none(options);
     pairing.all_in_order(pairing.nearest_boxes(), &mut nearest);
-    nearest.answer(pairing)
+    nearest.answer(pairing.finish())
 }
 
 /// The nearest pair, by all threads. They share the least distance found so far, which changes what is tested, but
@@ -217,17 +214,10 @@ fn par_least<S: SupportMap + Sync, T: SupportMap<Vector = S::Vector> + Sync>(
     /// What one thread tests before: then the limit is mostly near the end already.
     const BEFORE: usize = 64;
     let (mut nearest, mut boxes) = (Nearest::none(options), pairing.nearest_boxes());
-    let mut ended = pairing.half_spaces_in_order(&mut nearest);
-    let mut left = BEFORE;
-    while ended.is_continue()
-        && left > 0
-        && let Some((pair, from)) = boxes.next(nearest.limit.0)
-    {
-        (left, ended) = (left - 1, pairing.ask(pair, from, &beside_box, &mut nearest));
-    }
-    if ended.is_break() {
+    let of_half_spaces = pairing.half_spaces_in_order(&mut nearest);
+    if of_half_spaces.is_break() || pairing.in_order(&mut boxes, BEFORE, &mut nearest).is_break() {
         pairing.work.nodes += boxes.nodes();
-        return nearest.answer(pairing);
+        return nearest.answer(pairing.finish());
     }
     // Numbers that are not negative are in the order of their bits.
     let shared = AtomicU64::new(nearest.limit.0.as_f64().to_bits());
@@ -235,10 +225,11 @@ fn par_least<S: SupportMap + Sync, T: SupportMap<Vector = S::Vector> + Sync>(
     let parts: alloc::vec::Vec<_> = boxes
         .deal(PARTS)
         .into_par_iter()
-        .map(|part| {
+        .map(|mut part| {
             let mut pairing = before;
             let mut question = OnThread { nearest: Nearest { pair: None, ..nearest }, shared: &shared };
-            let _ = pairing.in_order(part, &mut question);
+            let _ = pairing.in_order(&mut part, usize::MAX, &mut question);
+            pairing.work.nodes += part.nodes();
             (question.nearest, pairing.work)
         })
         .collect();
@@ -249,7 +240,7 @@ fn par_least<S: SupportMap + Sync, T: SupportMap<Vector = S::Vector> + Sync>(
             (nearest.pair, nearest.limit) = (part.pair, part.limit);
         }
     }
-    nearest.answer(pairing)
+    nearest.answer(pairing.finish())
 }
 
 /// The nearest pair that one thread finds, and the least distance that any has found.
