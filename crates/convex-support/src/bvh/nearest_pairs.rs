@@ -67,8 +67,9 @@ impl<V: Vector> Bvh<V> {
 
 impl<'t, V: Vector> NearestPairs<'t, V> {
     fn new(among: PairSearch<'t, V>) -> Self {
-        let (order, deep) = (Order::DeepAtFirst, alloc::vec![(among.start.0.after_descending(0.0), among.start.1)]);
-        Self { among, order, deep, queue: BinaryHeap::new(), nodes: 0 }
+        let (a, b) = among.start;
+        let deep = alloc::vec![(Link::descending(a.after(0.0)), b)];
+        Self { among, order: Order::DeepAtFirst, deep, queue: BinaryHeap::new(), nodes: 0 }
     }
 
     /// The same pairs, depth first: of the children of two nodes the nearest first, and all of them before the others
@@ -133,7 +134,7 @@ impl<'t, V: Vector> NearestPairs<'t, V> {
     }
 
     fn push(&mut self, bound: f32, (a, b): Pair) {
-        let pair = (a.after_descending(bound), b);
+        let pair = (Link::descending(a.after(bound)), b);
         if bound == 0.0 || self.order != Order::Nearest {
             self.deep.push(pair);
         } else {
@@ -143,7 +144,7 @@ impl<'t, V: Vector> NearestPairs<'t, V> {
 
     fn pop(&mut self) -> Option<(Pair, f32)> {
         let (number, b) = self.deep.pop().or_else(|| self.queue.pop())?;
-        let (a, bound) = Link::with_bound_descending(number);
+        let (a, bound) = Link::with_bound(Link::descending(number));
         Some(((a, b), bound))
     }
 

@@ -143,22 +143,16 @@ impl Link {
         u64::from(bound.to_bits()) << 32 | u64::from(self.0)
     }
 
-    /// The same in the descending order of the bounds.
-    #[inline(always)]
-    pub(super) fn after_descending(self, bound: f32) -> u64 {
-        u64::from(!bound.to_bits()) << 32 | u64::from(self.0)
-    }
-
     /// The bound and the link in such a number.
-    #[inline(always)]
-    pub(super) fn with_bound_descending(number: u64) -> (Self, f32) {
-        (Self(number as u32), f32::from_bits(!((number >> 32) as u32)))
-    }
-
-    /// The bound and the link in a number in ascending order.
     #[inline(always)]
     pub(super) fn with_bound(number: u64) -> (Self, f32) {
         (Self(number as u32), f32::from_bits((number >> 32) as u32))
+    }
+
+    /// Such a number as one in the descending order of the bounds, and back.
+    #[inline(always)]
+    pub(super) fn descending(number: u64) -> u64 {
+        number ^ !u64::from(u32::MAX)
     }
 }
 

@@ -4,12 +4,11 @@ use core::ops::ControlFlow;
 
 use convex_support::{Scalar, ScalarOf, SupportMap};
 
-use super::answers::OfPair;
 use super::asked::Asked;
 use super::bounds::Question;
 use super::instance::Id;
 use super::{Body, Occupant, PairContact, Scene, SceneDistance, SceneRayCast, Work};
-use crate::{Contact, DistanceOptions, HalfSpace, Ray, RayCastError, RayCastOptions};
+use crate::{DistanceOptions, HalfSpace, Ray, RayCastError, RayCastOptions};
 
 /// The bodies of a scene that a question is about: all of them, or those that a closure picks, made by [`Scene::all`]
 /// and [`Scene::among`]. Its methods are the questions that a scene answers.
@@ -39,7 +38,7 @@ pub struct Among<'s, S: SupportMap> {
     without_pairs: Option<&'s Pairs<'s>>,
     until: Option<&'s StopFlag<'s>>,
     /// The contacts of the last step.
-    last: &'s [PairContact<S::Vector>],
+    pub(super) last: &'s [PairContact<S::Vector>],
 }
 
 /// Whether a question is about the body with this index.
@@ -128,12 +127,6 @@ impl<'s, S: SupportMap> Among<'s, S> {
     #[must_use]
     pub fn after(self, last: &'s [PairContact<S::Vector>]) -> Self {
         Self { last, ..self }
-    }
-
-    /// The last contact of these bodies.
-    pub(super) fn last_of(&self, pair: [Id; 2]) -> Option<&'s Contact<S::Vector>> {
-        let found = self.last.binary_search_by_key(&pair, OfPair::ids).ok()?;
-        Some(&self.last[found].contact)
     }
 
     /// What is at this index, if the question is about it.

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use convex_support::{Scalar, Vector};
 
 use super::instance::Id;
-use crate::{Cast, Contact, Distance, Impact, RayHit, SignedDistance, Status};
+use crate::{Cast, Contact, Distance, Impact, MotionCast, RayHit, SignedDistance, Status};
 
 /// What was done for an answer, and what was left out. It may be ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -305,9 +305,10 @@ pub struct PairImpact<V: Vector> {
 }
 
 impl<V: Vector> PairImpact<V> {
-    pub(super) fn of<H>([a, b]: [Id; 2], impact: Impact<V>, cast: &Cast<H, V>) -> Self {
-        let &Cast { lower, upper, status, .. } = cast;
-        Self { a: a.body, b: b.body, member_a: a.member, member_b: b.member, impact, lower, upper, status }
+    pub(super) fn of(pair: [Id; 2], cast: &MotionCast<V>) -> Option<Self> {
+        let [Id { body: a, member: member_a }, Id { body: b, member: member_b }] = pair;
+        let &Cast { outcome, lower, upper, status, .. } = cast;
+        outcome.hit().map(|impact| Self { a, b, member_a, member_b, impact, lower, upper, status })
     }
 }
 

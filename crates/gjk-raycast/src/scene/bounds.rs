@@ -122,8 +122,7 @@ impl<V: Vector> MovingBalls<V> {
             let reach = V::splat(ball.radius);
             swept(Aabb { min: ball.start - reach, max: ball.start + reach }, ball.velocity, duration)
         };
-        let both = |a: Aabb<V>, b: Aabb<V>| Aabb { min: a.min.min(b.min), max: a.max.max(b.max) };
-        Self::parts(shape, motion, options).map(around).reduce(both).unwrap_or_else(Aabb::everything)
+        Self::parts(shape, motion, options).map(around).reduce(|a, b| a.union(&b)).unwrap_or_else(Aabb::everything)
     }
 
     /// When each part begins, how long it lasts, and its ball.
@@ -157,13 +156,15 @@ impl<V: Vector> MovingBalls<V> {
 /// What a box sweeps as it moves straight for a time, with room for the rounding of its positions: 64 ε of each
 /// coordinate. Endless ways are infinite.
 pub(super) fn swept<V: Vector>(around: Aabb<V>, velocity: V, duration: V::Scalar) -> Aabb<V> {
-    let way = V::from_fn(|i| {
-        let speed = velocity.get(i);
-        if speed == V::Scalar::ZERO { speed } else { speed * duration }
-    });
+    let way = way(velocity, duration);
     let size = around.min.abs().max(around.max.abs()) + way.abs();
     let room = size * (V::Scalar::from_f64(64.0) * V::Scalar::EPSILON);
     Aabb { min: around.min + way.min(V::ZERO) - room, max: around.max + way.max(V::ZERO) + room }
+}
+
+/// How far a velocity leads; nowhere along a coordinate in which it is zero, also if the time is infinite.
+fn way<V: Vector>(velocity: V, duration: V::Scalar) -> V {
+    V::from_fn(|i| if velocity.get(i) == Scalar::ZERO { velocity.get(i) } else { velocity.get(i) * duration })
 }
 
 /// The box around a moving ball, the time when it begins to move, and its duration, rounded up.
@@ -179,11 +180,7 @@ impl<V: Vector> MovingBox<V> {
     fn new(start: V::Scalar, duration: V::Scalar, ball: MovingBall<V>) -> Self {
         let number = V::Scalar::from_f64;
         let within = ball.start.abs() + V::splat(ball.radius);
-        let reach = V::from_fn(|i| {
-            let speed = ball.velocity.get(i).abs();
-            let way = if speed == Scalar::ZERO { speed } else { speed * duration };
-            ball.start.get(i).abs() + way + ball.radius
-        });
+        let reach = ball.start.abs() + way(ball.velocity, duration).abs() + V::splat(ball.radius);
         // An endless motion counts with its start alone.
         let reach = if reach.is_finite() { reach } else { within };
         let room = number(64.0) * V::Scalar::EPSILON * reach.max_element();

@@ -3,13 +3,14 @@
 
 use alloc::vec::Vec;
 
-use convex_support::{Point, Scalar as _, ScalarOf, SupportMap, Vector as _};
+use convex_support::{Point, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::among::Among;
 use super::answers::{BodyContact, OfPair, PairContact, Work, reuse};
-use super::asked::{asked, asked_pair};
+use super::asked::asked;
 use super::instance::Id;
+use super::pairs::{AskPair, Pairing};
 use super::{Body, Scene};
 use crate::contact::contact_of;
 use crate::{Contact, SignedDistanceOptions, signed_distance};
@@ -41,7 +42,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: SignedDistanceOptions<S::Vector>,
         contacts: &mut Vec<BodyContact<S::Vector>>,
     ) -> Work {
-        let work = self.near(shape, of_boxes::<S>(within), reuse(contacts), |Id { body: index, member }, body| {
+        let work = self.near(shape, of_boxes(within), reuse(contacts), |Id { body: index, member }, body| {
             let contact = asked!(body, body => body.contact(shape, within, options))?;
             Some(BodyContact { body: index, member, contact })
         });
@@ -75,11 +76,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: SignedDistanceOptions<S::Vector>,
         contacts: &mut Vec<PairContact<S::Vector>>,
     ) -> Work {
-        self.find_pairs(
-            of_boxes::<S>(within),
-            contacts,
-            &|pair, a, b| asked_pair!(a, b => between(pair, a, b, within, options, self.last_of(pair))),
-        )
+        Pairing::within(*self).find(&ContactWithin { within, options, last: self.last }, contacts)
     }
 
     /// Finds the contacts of all pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than
@@ -91,12 +88,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: SignedDistanceOptions<S::Vector>,
         contacts: &mut Vec<PairContact<S::Vector>>,
     ) -> Work {
-        self.find_pairs_between(
-            other,
-            of_boxes::<S>(within),
-            contacts,
-            &|pair, a, b| asked_pair!(a, b => between(pair, a, b, within, options, self.last_of(pair))),
-        )
+        Pairing::between(*self, other).find(&ContactWithin { within, options, last: self.last }, contacts)
     }
 
     /// [`contacts_within`](Self::contacts_within) on all threads of the current [rayon](https://docs.rs/rayon) pool,
@@ -112,38 +104,49 @@ impl<S: SupportMap> Among<'_, S> {
     where
         S: Sync,
     {
-        self.par_find_pairs(
-            of_boxes::<S>(within),
-            contacts,
-            &|pair, a, b| asked_pair!(a, b => between(pair, a, b, within, options, self.last_of(pair))),
-        )
+        Pairing::within(*self).par_find(&ContactWithin { within, options, last: self.last }, contacts)
     }
 }
 
 /// The limit for the distance of boxes. Boxes have no depth, so that a negative `within` becomes zero.
-fn of_boxes<S: SupportMap>(within: ScalarOf<S>) -> ScalarOf<S> {
-    within.max(ScalarOf::<S>::ZERO)
+fn of_boxes<N: Scalar>(within: N) -> N {
+    within.max(N::ZERO)
 }
 
-/// The contact of two bodies, if they are no farther than `within` from each other.
-fn between<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
-    [id_a, id_b]: [Id; 2],
-    a: &Body<S>,
-    b: &Body<T>,
-    within: ScalarOf<S>,
-    options: SignedDistanceOptions<S::Vector>,
-    last: Option<&Contact<S::Vector>>,
-) -> Option<PairContact<S::Vector>> {
-    let contact = match (a, b) {
-        (Body::Convex(a), Body::Convex(b)) => contact_of(a, b, within, options, last),
-        (Body::Convex(a), Body::HalfSpace(b)) => b.contact_of(a, within, last),
-        (Body::HalfSpace(a), Body::Convex(b)) => {
-            a.contact_of(b, within, last.map(|last| last.reversed()).as_ref()).map(Contact::reversed)
-        }
-        (Body::HalfSpace(_), Body::HalfSpace(_)) => None,
-    };
-    let (Id { body: a, member: member_a }, Id { body: b, member: member_b }) = (id_a, id_b);
-    Some(PairContact { a, b, member_a, member_b, contact: contact? })
+/// The query for the contact of two bodies, if they are no farther than `within` from each other.
+struct ContactWithin<'l, V: Vector> {
+    within: V::Scalar,
+    options: SignedDistanceOptions<V>,
+    /// The contacts of the last step.
+    last: &'l [PairContact<V>],
+}
+
+impl<V: Vector> AskPair<V> for ContactWithin<'_, V> {
+    type Answer = PairContact<V>;
+
+    fn within(&self) -> V::Scalar {
+        of_boxes(self.within)
+    }
+
+    fn ask<S: SupportMap<Vector = V>, T: SupportMap<Vector = V>>(
+        &self,
+        pair: [Id; 2],
+        a: &Body<S>,
+        b: &Body<T>,
+    ) -> Option<PairContact<V>> {
+        let &Self { within, options, last } = self;
+        let last = last.binary_search_by_key(&pair, OfPair::ids).ok().map(|found| &last[found].contact);
+        let contact = match (a, b) {
+            (Body::Convex(a), Body::Convex(b)) => contact_of(a, b, within, options, last)?,
+            (Body::Convex(a), Body::HalfSpace(b)) => b.contact_of(a, within, last)?,
+            (Body::HalfSpace(a), Body::Convex(b)) => {
+                a.contact_of(b, within, last.map(|last| last.reversed()).as_ref())?.reversed()
+            }
+            (Body::HalfSpace(_), Body::HalfSpace(_)) => return None,
+        };
+        let [Id { body: a, member: member_a }, Id { body: b, member: member_b }] = pair;
+        Some(PairContact { a, b, member_a, member_b, contact })
+    }
 }
 
 impl<S: SupportMap> Scene<S> {

@@ -1,4 +1,6 @@
-//! The bodies that a ray or a moving shape hits.
+//! Which bodies does a ray or a moving shape hit, and which first? Those whose boxes meet what it sweeps are cast one by
+//! one, earliest boxes first, until no box is earlier than a hit. If bodies move by themselves, see
+//! [`moving_pairs`](super::moving_pairs).
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -305,8 +307,9 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<SceneCast<H, ScalarOf<S>>, RayCastError> {
         let mut found = First::default();
         let work = self.in_order(bound, end, |id, from, body| {
-            found.add(id, from, &ask(body)?, &value);
-            Ok(ControlFlow::Continue(found.limit(end)))
+            let cast = ask(body)?;
+            found.add(id, from, &cast, BodyHit::of(id, &cast).map(|hit| (value(&hit.hit), hit)));
+            Ok(ControlFlow::Continue(found.limit((end, Id::LAST))))
         })?;
         Ok(found.answer(work))
     }
@@ -319,7 +322,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: RayCastOptions<S::Vector>,
         casts: &mut [SceneRayCast<S::Vector>],
     ) -> Result<bool, RayCastError> {
-        let end = options.max_lambda;
+        let (end, all) = (options.max_lambda, (options.max_lambda, Id::LAST));
         let swept: [_; BUNDLE] = core::array::from_fn(|k| swept_point(rays[k.min(rays.len() - 1)]));
         // In the frames of instances, rays that are near one another hardly ever have directions of the same signs.
         let around = Moving::all(swept).filter(|_| self.scene.members == self.scene.len());
@@ -336,12 +339,13 @@ impl<S: SupportMap> Among<'_, S> {
             }
             for (k, &ray) in rays.iter().enumerate() {
                 let from = around.map_or(Scalar::ZERO, |around| swept[k].bound(&around));
-                if from < ScalarOf::<S>::infinity() && (from, id) < found[k].limit(end) {
-                    found[k].add(id, from, &asked!(body, body => body.ray_cast(ray, options))?, |hit| hit.lambda);
+                if from < ScalarOf::<S>::infinity() && (from, id) < found[k].limit(all) {
+                    let cast = asked!(body, body => body.ray_cast(ray, options))?;
+                    found[k].add(id, from, &cast, BodyHit::of(id, &cast).map(|hit| (hit.hit.lambda, hit)));
                     tested[k] += 1;
                 }
             }
-            let limits = found[..rays.len()].iter().map(|found| found.limit(end).0);
+            let limits = found[..rays.len()].iter().map(|found| found.limit(all).0);
             let last = limits.fold(ScalarOf::<S>::neg_infinity(), Float::max);
             Ok(ControlFlow::Continue((last, Id::LAST)))
         })?;
@@ -363,28 +367,29 @@ const BUNDLE: usize = 8;
 /// If a bundle meets the boxes of more bodies, its rays are cast one by one.
 const MOST_VISITED: usize = 64;
 
-/// The first hit of those that were found so far.
+/// The first hit of those that were found so far, of bodies or pairs with names `I`.
 ///
 /// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, which is impossible if
 /// the hit's bracket is closed. Keys, and all values kept here, are minima over bodies, without those that their boxes
 /// left out. So neither the order of the bodies matters, nor which others were tested.
 #[derive(Clone, Copy)]
-struct First<H, S: Scalar> {
+pub(super) struct First<I, F, S> {
     /// The least key, with the hit.
-    first: Option<((S, Id), BodyHit<H, S>)>,
-    /// The earliest possible hit of an undecided body, with its index.
-    open: Option<(S, Id)>,
-    lower: S,
+    pub(super) first: Option<((S, I), F)>,
+    /// The earliest possible hit of an undecided body, with its name.
+    pub(super) open: Option<(S, I)>,
+    pub(super) lower: S,
 }
 
-impl<H, S: Scalar> Default for First<H, S> {
+impl<I, F, S: Scalar> Default for First<I, F, S> {
     fn default() -> Self {
         Self { first: None, open: None, lower: S::infinity() }
     }
 }
 
-impl<H: Copy, S: Scalar> First<H, S> {
-    fn add<V: Vector<Scalar = S>>(&mut self, id: Id, from: S, cast: &Cast<H, V>, value: impl Fn(&H) -> S) {
+impl<I: Copy + PartialOrd, F: Copy, S: Scalar> First<I, F, S> {
+    /// Counts a cast; `hit` is what is kept of its hit, with the λ or the time.
+    pub(super) fn add<H, V: Vector<Scalar = S>>(&mut self, id: I, from: S, cast: &Cast<H, V>, hit: Option<(S, F)>) {
         let start = (Float::max(cast.lower, from), id);
         if !cast.outcome.is_miss() {
             self.lower = Float::min(self.lower, start.0);
@@ -392,23 +397,29 @@ impl<H: Copy, S: Scalar> First<H, S> {
         if cast.outcome.is_undecided() && self.open.is_none_or(|open| start < open) {
             self.open = Some(start);
         }
-        if let Some(hit) = BodyHit::of(id, cast) {
-            let key = (Float::max(value(&hit.hit), from), id);
+        if let Some((at, hit)) = hit {
+            let key = (Float::max(at, from), id);
             if self.first.is_none_or(|(least, _)| key < least) {
                 self.first = Some((key, hit));
             }
         }
     }
 
-    /// The key from which on no body counts.
-    fn limit(&self, end: S) -> (S, Id) {
-        self.first.map_or((end, Id::LAST), |(key, _)| key)
+    /// The key from which on no body counts, which is `end` before there is a hit.
+    pub(super) fn limit(&self, end: (S, I)) -> (S, I) {
+        self.first.map_or(end, |(key, _)| key)
     }
 
+    /// The undecided body that may be hit earliest, if that is before the first hit.
+    pub(super) fn undecided(&self) -> Option<I> {
+        self.open.filter(|&open| self.first.is_none_or(|(key, _)| open < key)).map(|(_, id)| id)
+    }
+}
+
+impl<H: Copy, S: Scalar> First<Id, BodyHit<H, S>, S> {
     fn answer(&self, work: Work) -> SceneCast<H, S> {
-        let before_first = |&open: &(S, Id)| self.first.is_none_or(|(key, _)| open < key);
-        let undecided = self.open.filter(before_first).map(|(_, id)| id.body);
         let lower = if work.cancelled { S::ZERO } else { self.lower };
+        let undecided = self.undecided().map(|id| id.body);
         SceneCast { first: self.first.map(|(_, hit)| hit), lower, undecided, work }
     }
 }

@@ -159,13 +159,9 @@ impl<S: SupportMap> Scene<S> {
     /// [`SceneError::NotFinite`] for the first body whose box is not finite.
     pub fn new(bodies: impl IntoIterator<Item = S>) -> Result<Self, SceneError> {
         let bodies: Vec<_> = bodies.into_iter().map(|body| Some(Occupant::Body(Body::Convex(body)))).collect();
-        let mut boxes = Vec::with_capacity(bodies.len());
-        for (index, slot) in bodies.iter().enumerate() {
-            let around = slot.as_ref().and_then(Occupant::around);
-            boxes.push(around.ok_or(SceneError::NotFinite { body: index })?);
-        }
-        let members = bodies.len();
-        Ok(Self { bodies, tree: Bvh::new(&boxes), members, ..Self::default() })
+        let around = |(body, slot): (_, &Occupant<S>)| slot.around().ok_or(SceneError::NotFinite { body });
+        let boxes: Vec<_> = bodies.iter().flatten().enumerate().map(around).collect::<Result<_, _>>()?;
+        Ok(Self { members: bodies.len(), bodies, tree: Bvh::new(&boxes), ..Self::default() })
     }
 
     /// The number of bodies.

@@ -11,10 +11,10 @@ use super::among::Among;
 use super::answers::{OfPair as _, PairImpact, SceneFirstContact, reuse};
 use super::asked::{Asked, asked, asked_pair};
 use super::body::seen_from;
-use super::bounds::{HeightBound, MovingBalls, swept};
-use super::hits::swept_box;
+use super::bounds::{MovingBalls, swept};
+use super::hits::{First, swept_box};
 use super::instance::Id;
-use super::pairs::Pairing;
+use super::pairs::{Pairing, up_to};
 use super::{Body, Occupant, Scene};
 use crate::motion::{check, checked};
 use crate::{ChainMotion, Impact, MotionCast, MotionCastOptions, RayCastError, RigidMotion};
@@ -125,64 +125,53 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> MovingPairs<'_, '_, S, T>
         mut all: Option<&mut Vec<PairImpact<S::Vector>>>,
     ) -> Result<SceneFirstContact<S::Vector>, RayCastError> {
         let candidates = self.candidates()?;
-        let (mut lower, mut first, mut open, mut refused) = (ScalarOf::<S>::infinity(), None, None, None);
-        let (end, is_all, mut work) = (self.options.max_time, all.is_some(), self.pairing.work);
-        let mut key = (end, [Id::LAST; 2]);
+        let (mut found, mut refused, mut work) = (First::default(), None, self.pairing.work);
+        let (end, is_all) = (up_to(self.options.max_time), all.is_some());
+        let limit = |found: &First<_, _, _>| if is_all { end } else { found.limit(end) };
         for (from, pair) in candidates {
-            if !is_all && (from, pair.map(Id::of)) > key {
+            if (from, pair.map(Id::of)) > limit(&found) {
                 break;
             }
             let ended = self.each(pair, from, &mut |pair, from, a, b| {
                 if self.pairing.a.stops(&mut work) {
                     return ControlFlow::Break(());
                 }
-                let next = ControlFlow::Continue(if is_all { end } else { key.0 });
-                let cast = match asked_pair!(a, b => self.cast(pair, a, b)) {
-                    None => return next,
-                    Some(Ok(cast)) => cast,
+                match asked_pair!(a, b => self.cast(pair, a, b)) {
+                    Some(Ok(cast)) => {
+                        work.tested += 1;
+                        let impact = PairImpact::of(pair, &cast);
+                        found.add(pair, from, &cast, impact.map(|found| (found.impact.time, found)));
+                        if let Some(all) = all.as_deref_mut() {
+                            all.extend(impact);
+                        }
+                    }
                     Some(Err(why)) => {
                         refused = Some(why);
                         return ControlFlow::Break(());
                     }
-                };
-                work.tested += 1;
-                let start = (Float::max(cast.lower, from), pair);
-                if !cast.outcome.is_miss() {
-                    lower = Float::min(lower, start.0);
+                    None => {}
                 }
-                if cast.outcome.is_undecided() && open.is_none_or(|open| start < open) {
-                    open = Some(start);
-                }
-                let Some(impact) = cast.outcome.hit() else { return next };
-                let found = PairImpact::of(pair, impact, &cast);
-                if let Some(all) = all.as_deref_mut() {
-                    all.push(found);
-                }
-                let at = (Float::max(impact.time, from), pair);
-                if at < key || first.is_none() && at.0 <= key.0 {
-                    (first, key) = (Some(found), at);
-                }
-                ControlFlow::Continue(if is_all { end } else { key.0 })
+                ControlFlow::Continue(limit(&found).0)
             });
-            if let Some(why) = refused {
-                return Err(why);
-            }
             if ended.is_break() {
                 break;
             }
+        }
+        if let Some(why) = refused {
+            return Err(why);
         }
         if let Some(all) = &mut all {
             all.sort_unstable_by(|p, q| {
                 let order = p.impact.time.partial_cmp(&q.impact.time);
                 order.unwrap_or(core::cmp::Ordering::Equal).then(p.ids().cmp(&q.ids()))
             });
-        } else if first.is_some() {
-            open = open.filter(|open| *open < key);
         }
         self.pairing.work = work;
         let work = self.pairing.finish();
-        let lower = if work.cancelled { Scalar::ZERO } else { lower };
-        Ok(SceneFirstContact { first, lower, undecided: open.map(|(_, pair)| pair.map(|id| id.body)), work })
+        let lower = if work.cancelled { Scalar::ZERO } else { found.lower };
+        let undecided = if is_all { found.open.map(|(_, pair)| pair) } else { found.undecided() };
+        let undecided = undecided.map(|pair| pair.map(|id| id.body));
+        Ok(SceneFirstContact { first: found.first.map(|(_, first)| first), lower, undecided, work })
     }
 
     /// The pairs that may meet before the end, by their boxes, in the order of the times from which on they may.
@@ -192,24 +181,21 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> MovingPairs<'_, '_, S, T>
         let first = swept_tree(&a, self.motions[0], self.options)?;
         let second = if same { None } else { Some(swept_tree(&b, self.motions[1], self.options)?) };
         let mut found = Vec::new();
-        let mut nodes = 0;
         let mut add = |[i, j]: [usize; 2]| {
             let pair = if same && j < i { [j, i] } else { [i, j] };
-            let Some(from) = self.from(pair) else { return };
-            if from <= self.options.max_time && from < Float::infinity() {
-                found.push((from, pair));
-            }
+            let may_meet = |from: &ScalarOf<S>| *from <= self.options.max_time && *from < Float::infinity();
+            found.extend(self.from(pair).filter(may_meet).map(|from| (from, pair)));
+            ControlFlow::Continue(())
         };
         let pairs =
             second.as_ref().map_or_else(|| first.pairs_within(near), |second| first.pairs_between(second, near));
-        nodes += pairs.visit(|i, j| {
-            add([i, j]);
-            ControlFlow::Continue(())
-        });
+        let mut nodes = pairs.visit(|i, j| add([i, j]));
         for of in self.pairing.half_spaces() {
-            let moves = self.motions[usize::from(of.is_second)](of.index) != RigidMotion::default();
             let boxes = if of.is_second { &first } else { second.as_ref().unwrap_or(&first) };
-            nodes += over(boxes, &of.height, near, moves, |other| add(of.pair(other)));
+            // All bodies, if the half-space moves.
+            let moves = self.motions[usize::from(of.is_second)](of.index) != RigidMotion::default();
+            let near = if moves { Float::infinity() } else { near };
+            nodes += boxes.within(&of.height, near, |other| add(of.pair(other)));
         }
         self.pairing.work.nodes += nodes;
         found.sort_unstable_by(|p, q| p.partial_cmp(q).unwrap_or(core::cmp::Ordering::Equal));
@@ -252,13 +238,11 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> MovingPairs<'_, '_, S, T>
         };
         let [of_a, of_b] = self.motions_of([i, j]);
         let next = match (a, b) {
-            (Occupant::Body(a), Occupant::Body(b)) => tell([Id::of(i), Id::of(j)], from, Asked::Own(a), Asked::Own(b)),
-            (Occupant::Body(a), b) => self.met_by(a, [of_a, of_b], (b, j, from), &mut |id, from, b| {
-                tell([Id::of(i), id], from, Asked::Own(a), b)
-            }),
-            (a, Occupant::Body(b)) => self.met_by(b, [of_b, of_a], (a, i, from), &mut |id, from, a| {
-                tell([id, Id::of(j)], from, a, Asked::Own(b))
-            }),
+            (Occupant::Instance(_), Occupant::Body(b)) => {
+                self.met_by(b, [of_b, of_a], (a, i, from), &mut |id, from, a| {
+                    tell([id, Id::of(j)], from, a, Asked::Own(b))
+                })
+            }
             (a, b) => a.each_member((i, from), &anywhere(), self.options.max_time, &mut 0, &mut |id_a, from, a| {
                 asked!(a, body => self.met_by(body, [of_a, of_b], (b, j, from), &mut |id_b, from, b| {
                     tell([id_a, id_b], from, a, b)
@@ -268,8 +252,8 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> MovingPairs<'_, '_, S, T>
         next.map_continue(|_| ())
     }
 
-    /// Calls `tell` for the members of an instance that a body may meet, given the motions of the body and of the
-    /// instance.
+    /// Calls `tell` for the other body, or for the members of the instance that a body may meet, given the motions of
+    /// both.
     fn met_by<A: SupportMap<Vector = S::Vector>, R: SupportMap<Vector = S::Vector>>(
         &self,
         body: &Body<A>,
@@ -278,13 +262,14 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> MovingPairs<'_, '_, S, T>
         tell: &mut impl FnMut(Id, ScalarOf<S>, Asked<'_, '_, R>) -> ControlFlow<(), ScalarOf<S>>,
     ) -> ControlFlow<(), ScalarOf<S>> {
         let end = self.options.max_time;
-        match body {
-            Body::Convex(shape) => {
+        match (body, slot) {
+            (_, Occupant::Body(body)) => tell(Id::of(index), from, Asked::Own(body)),
+            (Body::Convex(shape), _) => {
                 let seen = seen_from(other, own);
                 let question = MovingBalls::new(shape, &ChainMotion::new(&seen), &self.options);
                 slot.each_member((index, from), &question, end, &mut 0, tell)
             }
-            Body::HalfSpace(_) => slot.each_member((index, from), &anywhere(), end, &mut 0, tell),
+            (Body::HalfSpace(_), _) => slot.each_member((index, from), &anywhere(), end, &mut 0, tell),
         }
     }
 
@@ -327,21 +312,6 @@ fn as_solid<S: SupportMap, R>(
     }
     let ball = Ball::new(around.half_extents().norm()).ok()?;
     Some(tell(&Posed::translated(ball, around.center()).ok()?))
-}
-
-/// The bodies that may meet a half-space, by their boxes: all of them if it moves.
-fn over<V: Vector>(
-    boxes: &Bvh<V>,
-    height: &HeightBound<V>,
-    near: V::Scalar,
-    moves: bool,
-    mut add: impl FnMut(usize),
-) -> usize {
-    let everywhere = V::Scalar::infinity();
-    boxes.within(height, if moves { everywhere } else { near }, |other| {
-        add(other);
-        ControlFlow::Continue(())
-    })
 }
 
 /// The tree of the scene with the boxes that its bodies sweep, those of a motion without end as large as a tree bears.

@@ -1,4 +1,5 @@
-//! The nearest body, and all near bodies.
+//! Which body is nearest to a shape, and which are near? Those whose boxes are near enough are asked one by one, nearest
+//! boxes first. For pairs of bodies see [`nearest_pair`](super::nearest_pair) and [`pairs`](super::pairs).
 
 use alloc::vec::Vec;
 use core::convert::Infallible;

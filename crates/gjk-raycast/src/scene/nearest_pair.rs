@@ -15,7 +15,7 @@ use super::answers::{PairDistance, SceneAnyWithin, ScenePair, Work};
 use super::asked::{Asked, asked, asked_pair};
 use super::instance::Id;
 use super::nearest::distance_of as distance_of_boxes;
-use super::pairs::{Pairing, TestPair, beside_box, distance_of};
+use super::pairs::{Limit, Pairing, TestPair, beside_box, distance_of, up_to};
 use crate::{Distance, DistanceOptions};
 
 impl<S: SupportMap> Among<'_, S> {
@@ -39,14 +39,14 @@ impl<S: SupportMap> Among<'_, S> {
         other: &Scene<T>,
         options: DistanceOptions<S::Vector>,
     ) -> ScenePair<S::Vector> {
-        least(Pairing::between(*self, other), self.scene.tree.nearest_pairs(&other.tree), options)
+        least(Pairing::between(*self, other), options)
     }
 
     /// The nearest pair of two of these bodies, the lower index first, if it is within the
     /// [limit](DistanceOptions::limit) of the options: the least [`distance`](crate::distance()) of all pairs. Neighbours
     /// in a mesh touch: leave such pairs out by [`without_pairs`](Self::without_pairs).
     pub fn least_pair(&self, options: DistanceOptions<S::Vector>) -> ScenePair<S::Vector> {
-        least(Pairing::within(*self), self.scene.tree.nearest_pairs_within(), options)
+        least(Pairing::within(*self), options)
     }
 
     /// [`nearest_between`](Self::nearest_between) on all threads of the current [rayon](https://docs.rs/rayon) pool,
@@ -60,7 +60,7 @@ impl<S: SupportMap> Among<'_, S> {
     where
         S: Sync,
     {
-        par_least(Pairing::between(*self, other), self.scene.tree.nearest_pairs(&other.tree), options)
+        par_least(Pairing::between(*self, other), options)
     }
 
     /// [`least_pair`](Self::least_pair) on all threads of the current [rayon](https://docs.rs/rayon) pool, with the
@@ -70,7 +70,7 @@ impl<S: SupportMap> Among<'_, S> {
     where
         S: Sync,
     {
-        par_least(Pairing::within(*self), self.scene.tree.nearest_pairs_within(), options)
+        par_least(Pairing::within(*self), options)
     }
 
     /// Whether any body is no farther than `within` from the shape by [`distance`](crate::distance()): whether
@@ -96,7 +96,7 @@ impl<S: SupportMap> Among<'_, S> {
         within: ScalarOf<S>,
         options: DistanceOptions<S::Vector>,
     ) -> SceneAnyWithin<[usize; 2]> {
-        any(Pairing::within(*self), self.scene.tree.nearest_pairs_within().depth_first(), within, options)
+        any(Pairing::within(*self), within, options)
     }
 
     /// Whether any of these bodies is no farther than `within` from any of another scene: whether
@@ -107,42 +107,42 @@ impl<S: SupportMap> Among<'_, S> {
         within: ScalarOf<S>,
         options: DistanceOptions<S::Vector>,
     ) -> SceneAnyWithin<[usize; 2]> {
-        any(Pairing::between(*self, other), self.scene.tree.nearest_pairs(&other.tree).depth_first(), within, options)
+        any(Pairing::between(*self, other), within, options)
     }
 }
 
-/// A value from which on no pair counts: that of a pair, whose indices decide among equals.
-type Limit<N> = (N, [Id; 2]);
-
-/// The limit `end` itself is within it.
-fn up_to<N>(end: N) -> Limit<N> {
-    (end, [Id::LAST; 2])
-}
-
 impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'_, S, T> {
-    /// Tests the pairs of bounded bodies whose bound may be below the limit, mostly in the order of their bounds.
-    fn in_order(
-        &mut self,
-        mut boxes: NearestPairs<'_, S::Vector>,
-        question: &mut impl TestPair<S, T>,
-    ) -> ControlFlow<()> {
-        let mut ended = ControlFlow::Continue(());
-        while ended.is_continue()
-            && let Some((pair, from)) = boxes.next(question.limit())
-        {
-            ended = self.ask(pair, from, &beside_box, question);
+    /// Tests the pairs whose bound may be below the limit, those with half-spaces first.
+    fn all_in_order(&mut self, mut boxes: NearestPairs<'_, S::Vector>, question: &mut impl TestPair<S, T>) {
+        if self.half_spaces_in_order(question).is_continue() {
+            // The search is over, so a break no longer matters.
+            let _ = self.in_order(&mut boxes, usize::MAX, question);
         }
         self.work.nodes += boxes.nodes();
-        ended
+    }
+
+    /// Tests pairs of bounded bodies whose bound may be below the limit, mostly in the order of their bounds, and not
+    /// more than `most`. The nodes are those of `boxes`.
+    fn in_order(
+        &mut self,
+        boxes: &mut NearestPairs<'_, S::Vector>,
+        most: usize,
+        question: &mut impl TestPair<S, T>,
+    ) -> ControlFlow<()> {
+        for _ in 0..most {
+            let Some((pair, from)) = boxes.next(question.limit().0) else { break };
+            self.ask(pair, from, &beside_box, question)?;
+        }
+        ControlFlow::Continue(())
     }
 
     /// Tests the pairs with half-spaces in the same way.
     fn half_spaces_in_order(&mut self, question: &mut impl TestPair<S, T>) -> ControlFlow<()> {
         let mut ended = ControlFlow::Continue(());
         for of in self.half_spaces() {
-            let nodes = of.others.search(&of.height, question.limit(), |other, from| {
+            let nodes = of.others.search(&of.height, question.limit().0, |other, from| {
                 ended = self.ask(of.pair(other), from, &|_| of.height, question);
-                ended.map_continue(|()| question.limit())
+                ended.map_continue(|()| question.limit().0)
             });
             self.work.nodes += nodes;
             ended?;
@@ -168,23 +168,14 @@ impl<V: Vector> Nearest<V> {
         Self { pair: None, limit: up_to(end), lower: end, options }
     }
 
-    fn answer<S, T>(self, pairing: Pairing<'_, S, T>) -> ScenePair<V>
-    where
-        S: SupportMap<Vector = V>,
-        T: SupportMap<Vector = V>,
-    {
-        let work = pairing.finish();
+    fn answer(self, work: Work) -> ScenePair<V> {
         ScenePair { nearest: self.pair, lower: if work.cancelled { Scalar::ZERO } else { self.lower }, work }
     }
 }
 
 impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> TestPair<S, T> for Nearest<S::Vector> {
-    fn limit(&self) -> ScalarOf<S> {
-        self.limit.0
-    }
-
-    fn is_late(&self, pair: [Id; 2], from: ScalarOf<S>) -> bool {
-        from >= self.limit.0 && pair >= self.limit.1
+    fn limit(&self) -> Limit<ScalarOf<S>> {
+        self.limit
     }
 
     fn test(&mut self, pair: [Id; 2], from: ScalarOf<S>, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>) -> ControlFlow<()> {
@@ -203,15 +194,11 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> TestPair<S, T> for Neares
 /// The nearest pair, by one thread.
 fn least<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
     mut pairing: Pairing<'_, S, T>,
-    boxes: NearestPairs<'_, S::Vector>,
     options: DistanceOptions<S::Vector>,
 ) -> ScenePair<S::Vector> {
     let mut nearest = Nearest::none(options);
-    if pairing.half_spaces_in_order(&mut nearest).is_continue() {
-        // The search is over, so a break no longer matters.
-        let _ = pairing.in_order(boxes, &mut nearest);
-    }
-    nearest.answer(pairing)
+    pairing.all_in_order(pairing.nearest_boxes(), &mut nearest);
+    nearest.answer(pairing.finish())
 }
 
 /// The nearest pair, by all threads. They share the least distance found so far, which changes what is tested, but
@@ -219,7 +206,6 @@ fn least<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
 #[cfg(feature = "rayon")]
 fn par_least<S: SupportMap + Sync, T: SupportMap<Vector = S::Vector> + Sync>(
     mut pairing: Pairing<'_, S, T>,
-    mut boxes: NearestPairs<'_, S::Vector>,
     options: DistanceOptions<S::Vector>,
 ) -> ScenePair<S::Vector> {
     use rayon::prelude::*;
@@ -227,18 +213,11 @@ fn par_least<S: SupportMap + Sync, T: SupportMap<Vector = S::Vector> + Sync>(
     const PARTS: usize = 64;
     /// What one thread tests before: then the limit is mostly near the end already.
     const BEFORE: usize = 64;
-    let mut nearest = Nearest::none(options);
-    let mut ended = pairing.half_spaces_in_order(&mut nearest);
-    let mut left = BEFORE;
-    while ended.is_continue()
-        && left > 0
-        && let Some((pair, from)) = boxes.next(nearest.limit.0)
-    {
-        (left, ended) = (left - 1, pairing.ask(pair, from, &beside_box, &mut nearest));
-    }
-    if ended.is_break() {
+    let (mut nearest, mut boxes) = (Nearest::none(options), pairing.nearest_boxes());
+    let of_half_spaces = pairing.half_spaces_in_order(&mut nearest);
+    if of_half_spaces.is_break() || pairing.in_order(&mut boxes, BEFORE, &mut nearest).is_break() {
         pairing.work.nodes += boxes.nodes();
-        return nearest.answer(pairing);
+        return nearest.answer(pairing.finish());
     }
     // Numbers that are not negative are in the order of their bits.
     let shared = AtomicU64::new(nearest.limit.0.as_f64().to_bits());
@@ -246,10 +225,11 @@ fn par_least<S: SupportMap + Sync, T: SupportMap<Vector = S::Vector> + Sync>(
     let parts: alloc::vec::Vec<_> = boxes
         .deal(PARTS)
         .into_par_iter()
-        .map(|part| {
+        .map(|mut part| {
             let mut pairing = before;
             let mut question = OnThread { nearest: Nearest { pair: None, ..nearest }, shared: &shared };
-            let _ = pairing.in_order(part, &mut question);
+            let _ = pairing.in_order(&mut part, usize::MAX, &mut question);
+            pairing.work.nodes += part.nodes();
             (question.nearest, pairing.work)
         })
         .collect();
@@ -260,7 +240,7 @@ fn par_least<S: SupportMap + Sync, T: SupportMap<Vector = S::Vector> + Sync>(
             (nearest.pair, nearest.limit) = (part.pair, part.limit);
         }
     }
-    nearest.answer(pairing)
+    nearest.answer(pairing.finish())
 }
 
 /// The nearest pair that one thread finds, and the least distance that any has found.
@@ -273,12 +253,8 @@ struct OnThread<'s, V: Vector> {
 
 #[cfg(feature = "rayon")]
 impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> TestPair<S, T> for OnThread<'_, S::Vector> {
-    fn limit(&self) -> ScalarOf<S> {
-        self.nearest.limit.0
-    }
-
-    fn is_late(&self, pair: [Id; 2], from: ScalarOf<S>) -> bool {
-        TestPair::<S, T>::is_late(&self.nearest, pair, from)
+    fn limit(&self) -> Limit<ScalarOf<S>> {
+        self.nearest.limit
     }
 
     fn test(&mut self, pair: [Id; 2], from: ScalarOf<S>, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>) -> ControlFlow<()> {
@@ -324,12 +300,8 @@ impl<I: Ord + Copy, V: Vector> Any<I, V> {
 }
 
 impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> TestPair<S, T> for Any<[usize; 2], S::Vector> {
-    fn limit(&self) -> ScalarOf<S> {
-        self.options.limit
-    }
-
-    fn is_late(&self, _: [Id; 2], _: ScalarOf<S>) -> bool {
-        false
+    fn limit(&self) -> Limit<ScalarOf<S>> {
+        up_to(self.options.limit)
     }
 
     fn test(&mut self, pair: [Id; 2], from: ScalarOf<S>, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>) -> ControlFlow<()> {
@@ -343,13 +315,10 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> TestPair<S, T> for Any<[u
 /// Whether any pair is within a distance.
 fn any<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
     mut pairing: Pairing<'_, S, T>,
-    boxes: NearestPairs<'_, S::Vector>,
     within: ScalarOf<S>,
     options: DistanceOptions<S::Vector>,
 ) -> SceneAnyWithin<[usize; 2]> {
     let mut any = Any::none(within, options);
-    if pairing.half_spaces_in_order(&mut any).is_continue() {
-        let _ = pairing.in_order(boxes, &mut any);
-    }
+    pairing.all_in_order(pairing.nearest_boxes().depth_first(), &mut any);
     any.answer(pairing.finish())
 }

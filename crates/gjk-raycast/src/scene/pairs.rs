@@ -1,9 +1,11 @@
-//! Pairs of bodies that are near each other.
+//! Which pairs of bodies are near each other? Those whose boxes are, as the trees tell, are asked a single query, one by
+//! one and in no order. A [`Pairing`] also serves the searches for the [nearest](super::nearest_pair) pair and for pairs
+//! that [move](super::moving_pairs).
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use convex_support::{Aabb, BoxDistance, Bvh, PairSearch, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Aabb, BoxDistance, Bvh, NearestPairs, PairSearch, Scalar, ScalarOf, SupportMap, Vector};
 
 use super::among::Among;
 use super::answers::{OfPair, PairDistance, Work, reuse};
@@ -11,7 +13,7 @@ use super::asked::{Asked, asked_pair};
 use super::bounds::{HeightBound, Question};
 use super::instance::Id;
 use super::{Body, Occupant, Scene};
-use crate::{Distance, DistanceOptions, distance};
+use crate::{Distance, DistanceOptions};
 
 impl<S: SupportMap> Among<'_, S> {
     /// Finds all pairs of bodies that are no farther than `within` from each other by [`distance`](crate::distance()).
@@ -24,11 +26,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: DistanceOptions<S::Vector>,
         pairs: &mut Vec<PairDistance<S::Vector>>,
     ) -> Work {
-        self.find_pairs(
-            within,
-            pairs,
-            &|pair, a, b| asked_pair!(a, b => between(pair, a, b, options.with_limit(within))),
-        )
+        Pairing::within(*self).find(&options.with_limit(within), pairs)
     }
 
     /// Finds all pairs of one of these bodies, `a`, and any of another scene, `b`, that are no farther than `within`
@@ -40,12 +38,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: DistanceOptions<S::Vector>,
         pairs: &mut Vec<PairDistance<S::Vector>>,
     ) -> Work {
-        self.find_pairs_between(
-            other,
-            within,
-            pairs,
-            &|pair, a, b| asked_pair!(a, b => between(pair, a, b, options.with_limit(within))),
-        )
+        Pairing::between(*self, other).find(&options.with_limit(within), pairs)
     }
 
     /// [`pairs_within`](Self::pairs_within) on all threads of the current [rayon](https://docs.rs/rayon) pool, with the
@@ -60,69 +53,7 @@ impl<S: SupportMap> Among<'_, S> {
     where
         S: Sync,
     {
-        self.par_find_pairs(
-            within,
-            pairs,
-            &|pair, a, b| asked_pair!(a, b => between(pair, a, b, options.with_limit(within))),
-        )
-    }
-
-    /// Collects the results of `tell` for the pairs of these bodies whose boxes are no farther than `within` from each
-    /// other.
-    pub(super) fn find_pairs<P: OfPair>(
-        &self,
-        within: ScalarOf<S>,
-        pairs: &mut Vec<P>,
-        tell: &impl Fn([Id; 2], Asked<'_, '_, S>, Asked<'_, '_, S>) -> Option<P>,
-    ) -> Work {
-        let mut asking = Asking::new(Pairing::within(*self), within, tell, reuse(pairs));
-        asking.search(self.scene.tree.pairs_within(within));
-        asking.finish()
-    }
-
-    /// Collects them for pairs of one of these bodies and one of another scene.
-    pub(super) fn find_pairs_between<T: SupportMap<Vector = S::Vector>, P: OfPair>(
-        &self,
-        other: &Scene<T>,
-        within: ScalarOf<S>,
-        pairs: &mut Vec<P>,
-        tell: &impl Fn([Id; 2], Asked<'_, '_, S>, Asked<'_, '_, T>) -> Option<P>,
-    ) -> Work {
-        let mut asking = Asking::new(Pairing::between(*self, other), within, tell, reuse(pairs));
-        asking.search(self.scene.tree.pairs_between(&other.tree, within));
-        asking.finish()
-    }
-
-    #[cfg(feature = "rayon")]
-    pub(super) fn par_find_pairs<P: OfPair + Send>(
-        &self,
-        within: ScalarOf<S>,
-        pairs: &mut Vec<P>,
-        tell: &(impl Fn([Id; 2], Asked<'_, '_, S>, Asked<'_, '_, S>) -> Option<P> + Sync),
-    ) -> Work
-    where
-        S: Sync,
-    {
-        use rayon::prelude::*;
-        // Enough that idle threads find another piece, and few enough that they do not wait for each other.
-        const PIECES: usize = 256;
-        let pairing = Pairing::within(*self);
-        let pieces = self.scene.tree.pairs_within(within).split(PIECES);
-        let found: Vec<_> = pieces
-            .into_par_iter()
-            .map(|piece| {
-                let mut pairs = Vec::new();
-                let mut asking = Asking::new(pairing, within, tell, &mut pairs);
-                asking.search(piece);
-                (asking.pairing.work, pairs)
-            })
-            .collect();
-        let mut asking = Asking::new(pairing, within, tell, reuse(pairs));
-        for (work, pairs) in found {
-            asking.found.pairs.extend(pairs);
-            asking.pairing.count(work);
-        }
-        asking.finish()
+        Pairing::within(*self).par_find(&options.with_limit(within), pairs)
     }
 }
 
@@ -143,13 +74,25 @@ impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Clone for Pairing<'_, S, 
 
 impl<S: SupportMap, T: SupportMap<Vector = S::Vector>> Copy for Pairing<'_, S, T> {}
 
+/// A value from which on no pair counts: that of a pair, whose indices decide among equals.
+pub(super) type Limit<N> = (N, [Id; 2]);
+
+/// The limit `end` itself is within it.
+pub(super) fn up_to<N>(end: N) -> Limit<N> {
+    (end, [Id::LAST; 2])
+}
+
 /// What a question does with the pairs that it comes to.
 pub(super) trait TestPair<S: SupportMap, T: SupportMap<Vector = S::Vector>> {
     /// The bound from which on pairs no longer count.
-    fn limit(&self) -> ScalarOf<S>;
+    fn limit(&self) -> Limit<ScalarOf<S>>;
 
     /// Whether a pair with this bound no longer counts.
-    fn is_late(&self, pair: [Id; 2], from: ScalarOf<S>) -> bool;
+    #[inline]
+    fn is_late(&self, pair: [Id; 2], from: ScalarOf<S>) -> bool {
+        let (end, last) = self.limit();
+        from >= end && pair >= last
+    }
 
     /// Tests a pair with this bound, or breaks the question off.
     fn test(&mut self, pair: [Id; 2], from: ScalarOf<S>, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>) -> ControlFlow<()>;
@@ -164,6 +107,71 @@ impl<'s, S: SupportMap> Pairing<'s, S, S> {
 impl<'s, S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'s, S, T> {
     pub(super) fn between(all: Among<'s, S>, other: &'s Scene<T>) -> Self {
         Self { a: all, b: other.all(), same: false, work: Work::default() }
+    }
+
+    /// Collects the answers of a single query for the pairs whose boxes are near enough.
+    pub(super) fn find<Q: AskPair<S::Vector>>(mut self, query: &Q, pairs: &mut Vec<Q::Answer>) -> Work {
+        let mut found = Found { query, pairs: reuse(pairs) };
+        self.search(self.boxes_within(query.within()), &mut found);
+        self.end(found)
+    }
+
+    /// The same by all threads.
+    #[cfg(feature = "rayon")]
+    pub(super) fn par_find<Q: AskPair<S::Vector, Answer: Send> + Sync>(
+        mut self,
+        query: &Q,
+        pairs: &mut Vec<Q::Answer>,
+    ) -> Work
+    where
+        S: Sync,
+        T: Sync,
+    {
+        use rayon::prelude::*;
+        // Enough that idle threads find another piece, and few enough that they do not wait for each other.
+        const PIECES: usize = 256;
+        let search = |piece| {
+            let (mut part, mut pairs) = (self, Vec::new());
+            part.search(piece, &mut Found { query, pairs: &mut pairs });
+            (part.work, pairs)
+        };
+        let parts: Vec<_> = self.boxes_within(query.within()).split(PIECES).into_par_iter().map(search).collect();
+        let found = Found { query, pairs: reuse(pairs) };
+        for (work, pairs) in parts {
+            found.pairs.extend(pairs);
+            self.count(work);
+        }
+        self.end(found)
+    }
+
+    /// Tests the pairs of bounded bodies whose boxes are near.
+    fn search(&mut self, boxes: PairSearch<'_, S::Vector>, found: &mut impl TestPair<S, T>) {
+        let nodes = boxes.visit(|i, j| self.ask([i, j], Scalar::ZERO, &beside_box, found));
+        self.work.nodes += nodes;
+    }
+
+    /// Tests the bodies that are near half-spaces, sorts the pairs, and counts those that were left out.
+    fn end<Q: AskPair<S::Vector>>(mut self, mut found: Found<'_, S::Vector, Q>) -> Work {
+        let within = found.query.within();
+        for of in self.half_spaces() {
+            let ask = |other| self.ask(of.pair(other), Scalar::ZERO, &|_| of.height, &mut found);
+            let nodes = of.others.within(&of.height, within, ask);
+            self.work.nodes += nodes;
+        }
+        found.pairs.sort_unstable_by_key(OfPair::ids);
+        self.finish()
+    }
+
+    /// The pairs of bounded bodies whose boxes are no farther than `within` from each other.
+    fn boxes_within(&self, within: ScalarOf<S>) -> PairSearch<'s, S::Vector> {
+        let (a, b) = (&self.a.scene.tree, &self.b.scene.tree);
+        if self.same { a.pairs_within(within) } else { a.pairs_between(b, within) }
+    }
+
+    /// The same pairs, the nearest boxes first.
+    pub(super) fn nearest_boxes(&self) -> NearestPairs<'s, S::Vector> {
+        let (a, b) = (&self.a.scene.tree, &self.b.scene.tree);
+        if self.same { a.nearest_pairs_within() } else { a.nearest_pairs(b) }
     }
 
     /// Tests two bodies with this bound, or the pairs of their members that are near; `beside` is the question of what
@@ -189,12 +197,12 @@ impl<'s, S: SupportMap, T: SupportMap<Vector = S::Vector>> Pairing<'s, S, T> {
             return self.test(pair, from, (Asked::Own(a), Asked::Own(b)), question);
         }
         let trees = [&self.a.scene.tree, &self.b.scene.tree];
-        let (mut nodes, limit) = (0, question.limit());
+        let (mut nodes, (limit, _)) = (0, question.limit());
         let mut tell = |pair, from, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>| {
             if !question.is_late(pair, from) {
                 self.test(pair, from, (a, b), question)?;
             }
-            ControlFlow::Continue(question.limit())
+            ControlFlow::Continue(question.limit().0)
         };
         let next = each_pair([i, j], (a, b), trees, (from, limit), &mut nodes, beside, &mut tell);
         self.work.nodes += nodes;
@@ -274,69 +282,39 @@ pub(super) fn beside_box<V: Vector>(around: Option<Aabb<V>>) -> BoxDistance<V> {
     BoxDistance::new(around.unwrap_or_else(Aabb::everything))
 }
 
-/// A running search for all pairs within a distance.
-struct Asking<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>, F, P> {
-    pairing: Pairing<'s, S, T>,
-    found: Found<'p, ScalarOf<S>, F, P>,
+/// A single query of two bodies.
+pub(super) trait AskPair<V: Vector> {
+    type Answer: OfPair;
+
+    /// How far apart boxes may be, which is not negative if bodies can be near enough at all.
+    fn within(&self) -> V::Scalar;
+
+    /// The answer for two bodies, if they are near enough; `None` for two half-spaces.
+    fn ask<S: SupportMap<Vector = V>, T: SupportMap<Vector = V>>(
+        &self,
+        pair: [Id; 2],
+        a: &Body<S>,
+        b: &Body<T>,
+    ) -> Option<Self::Answer>;
 }
 
 /// The pairs found so far.
-struct Found<'p, N, F, P> {
-    within: N,
-    /// The result for two bodies, if there is any.
-    tell: &'p F,
-    pairs: &'p mut Vec<P>,
+struct Found<'p, V: Vector, Q: AskPair<V>> {
+    query: &'p Q,
+    pairs: &'p mut Vec<Q::Answer>,
 }
 
-impl<S, T, F, P> TestPair<S, T> for Found<'_, ScalarOf<S>, F, P>
-where
-    S: SupportMap,
-    T: SupportMap<Vector = S::Vector>,
-    F: Fn([Id; 2], Asked<'_, '_, S>, Asked<'_, '_, T>) -> Option<P>,
+impl<S: SupportMap, T: SupportMap<Vector = S::Vector>, Q: AskPair<S::Vector>> TestPair<S, T>
+    for Found<'_, S::Vector, Q>
 {
-    fn limit(&self) -> ScalarOf<S> {
-        self.within
-    }
-
-    fn is_late(&self, _: [Id; 2], _: ScalarOf<S>) -> bool {
-        false
+    fn limit(&self) -> Limit<ScalarOf<S>> {
+        up_to(self.query.within())
     }
 
     #[inline]
     fn test(&mut self, pair: [Id; 2], _: ScalarOf<S>, a: Asked<'_, '_, S>, b: Asked<'_, '_, T>) -> ControlFlow<()> {
-        self.pairs.extend((self.tell)(pair, a, b));
+        self.pairs.extend(asked_pair!(a, b => self.query.ask(pair, a, b)));
         ControlFlow::Continue(())
-    }
-}
-
-impl<'s, 'p, S, T, F, P: OfPair> Asking<'s, 'p, S, T, F, P>
-where
-    S: SupportMap,
-    T: SupportMap<Vector = S::Vector>,
-    F: Fn([Id; 2], Asked<'_, '_, S>, Asked<'_, '_, T>) -> Option<P>,
-{
-    fn new(pairing: Pairing<'s, S, T>, within: ScalarOf<S>, tell: &'p F, pairs: &'p mut Vec<P>) -> Self {
-        Self { pairing, found: Found { within, tell, pairs } }
-    }
-
-    /// Tests the pairs of bounded bodies whose boxes are near.
-    fn search(&mut self, search: PairSearch<'_, S::Vector>) {
-        let Self { pairing, found } = self;
-        let nodes = search.visit(|i, j| pairing.ask([i, j], Scalar::ZERO, &beside_box, found));
-        pairing.work.nodes += nodes;
-    }
-
-    /// Tests the bodies that are near half-spaces, sorts the pairs, and counts those that were left out.
-    fn finish(self) -> Work {
-        let Self { mut pairing, mut found } = self;
-        let within = found.within;
-        for of in pairing.half_spaces() {
-            let ask = |other| pairing.ask(of.pair(other), Scalar::ZERO, &|_| of.height, &mut found);
-            let nodes = of.others.within(&of.height, within, ask);
-            pairing.work.nodes += nodes;
-        }
-        found.pairs.sort_unstable_by_key(OfPair::ids);
-        pairing.finish()
     }
 }
 
@@ -364,15 +342,23 @@ fn each_pair<S: SupportMap, T: SupportMap<Vector = S::Vector>, Q: Question<S::Ve
     next
 }
 
-/// The distance from one body to another, if it is within the limit; `None` for two half-spaces.
-fn between<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
-    [id_a, id_b]: [Id; 2],
-    a: &Body<S>,
-    b: &Body<T>,
-    options: DistanceOptions<S::Vector>,
-) -> Option<PairDistance<S::Vector>> {
-    let distance = distance_of(a, b, options)?;
-    (distance.distance <= options.limit).then(|| PairDistance::of([id_a, id_b], distance))
+/// The distance, if it is within the limit.
+impl<V: Vector> AskPair<V> for DistanceOptions<V> {
+    type Answer = PairDistance<V>;
+
+    fn within(&self) -> V::Scalar {
+        self.limit
+    }
+
+    fn ask<S: SupportMap<Vector = V>, T: SupportMap<Vector = V>>(
+        &self,
+        pair: [Id; 2],
+        a: &Body<S>,
+        b: &Body<T>,
+    ) -> Option<PairDistance<V>> {
+        let distance = distance_of(a, b, *self)?;
+        (distance.distance <= self.limit).then(|| PairDistance::of(pair, distance))
+    }
 }
 
 /// The distance from one body to another; `None` for two half-spaces.
@@ -382,9 +368,8 @@ pub(super) fn distance_of<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
     options: DistanceOptions<S::Vector>,
 ) -> Option<Distance<S::Vector>> {
     match (a, b) {
-        (Body::Convex(a), Body::Convex(b)) => Some(distance(a, b, options)),
-        (Body::Convex(a), Body::HalfSpace(b)) => Some(b.distance_from(a)),
-        (Body::HalfSpace(a), Body::Convex(b)) => Some(a.distance_from(b).reversed()),
+        (Body::Convex(a), b) => Some(b.distance_from(a, options)),
+        (a, Body::Convex(b)) => Some(a.distance_from(b, options).reversed()),
         (Body::HalfSpace(_), Body::HalfSpace(_)) => None,
     }
 }
