@@ -7,8 +7,6 @@ use serde_json::json;
 
 use crate::engine;
 use crate::mesh::Meshes;
-use crate::validate::score;
-use crate::wire::answer::{Line, as_read};
 use crate::wire::fields::Object;
 
 /// A body whose planes are evaluated in intervals of 256 bits.
@@ -38,12 +36,4 @@ pub(crate) fn of(query: &Object, starts: &[Numbers], meshes: &Meshes) -> Option<
     let apart = Exact(b.minus(&a));
     let (a, b) = (Exact(a), Exact(b));
     question.claims(starts, PairPlanes { a: &a, b: &b, apart: &apart })
-}
-
-/// What is wrong with the answer to a query that says what is expected of it.
-pub(crate) fn expected(query: &Object, meshes: &Meshes) -> Vec<String> {
-    let Ok(question) = engine::question(query, meshes) else { return Vec::new() };
-    let answer = as_read(Line { id: None, line: 0, outcome: question.ask() });
-    let is_undecided = answer.contains_key("error");
-    if is_undecided { Vec::new() } else { score::judge(query, &answer).wrong }
 }

@@ -18,7 +18,7 @@ pub mod query;
 pub mod wire;
 
 // All else are tasks of a command line. The page in a browser, for `target_os` "unknown", has none.
-#[cfg(not(target_os = "unknown"))]
+#[cfg(feature = "studies")]
 pub mod bits;
 #[cfg(not(target_os = "unknown"))]
 mod claims;
@@ -28,7 +28,7 @@ pub mod docs;
 pub mod follow;
 #[cfg(not(target_os = "unknown"))]
 pub mod footprint;
-#[cfg(not(target_os = "unknown"))]
+#[cfg(feature = "studies")]
 pub mod fuzz;
 #[cfg(not(target_os = "unknown"))]
 pub mod judge;

@@ -1,6 +1,6 @@
 //! The workspace's tasks: `cargo xtask --help`.
 //!
-//! What is asked of every newcomer's machine is small: queries, cases, damaged lines, documentation. Studies, which
+//! What is asked of every newcomer's machine is small: queries, cases, proofs, documentation. Studies, which
 //! compile the algorithms for hundreds of types or draw pictures, are a package of their own, built when one of them is
 //! asked for.
 
@@ -9,7 +9,7 @@ use std::io::{self, Write};
 use std::process::{Command, ExitCode};
 
 use clap::{Args, Parser, Subcommand};
-use xtask::{bits, docs, follow, footprint, fuzz, museum, page, paths, prove, query, validate};
+use xtask::{docs, follow, footprint, museum, page, paths, prove, query, validate};
 
 /// Answers query files, validates the crates against true answers, and draws what they do.
 #[derive(Debug, Parser)]
@@ -45,15 +45,6 @@ enum Task {
     /// Exit status: 0 if every line is proved, 1 if some line is not proved or is disproved, 2 if a file could not be
     /// read.
     Prove(prove::Choice),
-    /// Try damaged query lines, and hulls of integers against an exact oracle, for a bounded time.
-    ///
-    /// Exit status: 0 if nothing failed, 1 if something did, 2 if the suite could not be read.
-    Fuzz(fuzz::Scope),
-    /// Answer questions from fixed seeds, and compare the hashes of the answers with those that every machine is to
-    /// have.
-    ///
-    /// Exit status: 0 if every hash is equal, 1 if some are not, 2 if the file of hashes could not be read or written.
-    Bits(bits::Choice),
     /// Ask about poses out of public trackers, where this or that library was wrong.
     ///
     /// Exit status: 0 if every answer is right, 1 if some answer is wrong, 2 if a file could not be read or written.
@@ -74,6 +65,12 @@ enum Task {
     ///
     /// Exit status: 0, or 1 if something got longer, or 2 if a file could not be read.
     Follow(follow::Choice),
+    /// Try damaged query lines, hulls of integers, and what answers say of themselves, for a bounded time (a study).
+    #[command(disable_help_flag = true)]
+    Fuzz(Passed),
+    /// Compare the hashes of answers to questions from fixed seeds with those that every machine is to have (a study).
+    #[command(disable_help_flag = true)]
+    Bits(Passed),
     /// Move a robot along its trajectory among obstacles (a study).
     #[command(disable_help_flag = true)]
     Scene(Passed),
@@ -111,15 +108,19 @@ fn main() -> ExitCode {
         Task::Validate(scope) => validate::run(&scope, &validate::QUICK),
         Task::Path(choice) => paths::run(&choice),
         Task::Prove(choice) => prove::run(&choice),
-        Task::Fuzz(scope) => fuzz::run(&scope),
-        Task::Bits(choice) => bits::run(&choice),
         Task::Museum(choice) => museum::run(choice),
         Task::Page(choice) => page::run(&choice),
         Task::Docs => docs::run(),
         Task::Footprint(choice) => footprint::run(&choice),
         Task::Follow(choice) => follow::run(&choice),
         Task::Judge(_) | Task::Growth(_) => study("peers"),
-        Task::Scene(_) | Task::Matrix(_) | Task::Sweep(_) | Task::Book2d(_) | Task::Render(_) => study(""),
+        Task::Fuzz(_)
+        | Task::Bits(_)
+        | Task::Scene(_)
+        | Task::Matrix(_)
+        | Task::Sweep(_)
+        | Task::Book2d(_)
+        | Task::Render(_) => study(""),
     }
 }
 

@@ -8,6 +8,7 @@ use super::Record;
 use super::page::error;
 use super::score::called;
 use super::stiff;
+use crate::engine::IS_FOR_STUDIES;
 use crate::plot::duration;
 use crate::table::{aligned, quantile};
 
@@ -50,7 +51,8 @@ impl Group {
             self.cases.to_string(),
             (self.cases - self.wrong).to_string(),
             self.wrong.to_string(),
-            self.wide.to_string(),
+            // Only the laws of claims tell.
+            told(IS_FOR_STUDIES.then_some(self.wide as f64), whole),
             self.soft.to_string(),
             told(quantile(&self.relative, 0.5), error),
             told(quantile(&self.relative, 0.99), error),

@@ -1,4 +1,5 @@
-//! What takes long to compile or to run: the whole report of `cargo xtask validate`, sweeps, a robot's scene, pictures.
+//! What takes long to compile or to run: the whole report of `cargo xtask validate`, fuzzing, sweeps, a robot's scene,
+//! pictures.
 //!
 //! `cargo xtask` builds and starts it when one of these is asked for.
 
@@ -15,7 +16,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use xtask::validate;
+use xtask::{bits, fuzz, validate};
 
 /// The studies of the workspace.
 #[derive(Debug, Parser)]
@@ -31,6 +32,15 @@ enum Task {
     ///
     /// Exit status: 0 if everything is right, 1 if some answer is wrong, 2 if a file could not be read.
     Validate(validate::Scope),
+    /// Try damaged query lines, and hulls of integers against an exact oracle, for a bounded time.
+    ///
+    /// Exit status: 0 if nothing failed, 1 if something did, 2 if the suite could not be read.
+    Fuzz(fuzz::Scope),
+    /// Answer questions from fixed seeds, and compare the hashes of the answers with those that every machine is to
+    /// have.
+    ///
+    /// Exit status: 0 if every hash is equal, 1 if some are not, 2 if the file of hashes could not be read or written.
+    Bits(bits::Choice),
     /// Move a robot along its trajectory among obstacles: ellipsoids first, exact distances where they cannot decide.
     ///
     /// Exit status: 0, or 1 if an answer differs from the given truth, or 2 if a file could not be read.
@@ -76,6 +86,8 @@ enum Task {
 fn main() -> ExitCode {
     match Arguments::parse().task {
         Task::Validate(scope) => validate::run(&scope, &report::CHAPTERS),
+        Task::Fuzz(scope) => fuzz::run(&scope),
+        Task::Bits(choice) => bits::run(&choice),
         Task::Scene(choice) => scene::run(&choice),
         Task::Matrix(choice) => matrix::run(&choice),
         Task::Sweep(scope) => sweep::run(&scope),
