@@ -122,7 +122,12 @@ impl<V: Vector> NewestPlanes<'_, V> {
         toward: (V::Scalar, V::Scalar),
     ) -> Result<RayPoint<V>, Stop<V>> {
         let p = self.support(bracket, plane)?;
-        if is_beyond(toward, &p) { Ok(p) } else { self.support_farther(bracket, toward) }
+        if is_beyond(toward, &p) {
+            return Ok(p);
+        }
+        // Not returned as it is: the point above would be written to memory for the call, too.
+        let p = self.support_farther(bracket, toward)?;
+        Ok(p)
     }
 
     /// [`support_toward`](Self::support_toward) of planes that are tilted more than the last one.
