@@ -30,8 +30,8 @@ struct Waypoint {
 struct Piece([[f64; DEGREE + 1]; JOINTS]);
 
 impl Piece {
-    /// With duration `T`, the polynomial with points `b` has the value `b₀`, the rate `5(b₁ − b₀)/T` and the acceleration
-    /// `20(b₂ − 2b₁ + b₀)/T²` at its start.
+    /// With duration `T`, the polynomial with points `b` has the value `b₀`, the rate `5(b₁ − b₀)/T` and the
+    /// acceleration `20(b₂ − 2b₁ + b₀)/T²` at its start.
     fn between([from, to]: [&Waypoint; 2]) -> Self {
         let t = to.time - from.time;
         Self(std::array::from_fn(|joint| {
@@ -54,8 +54,8 @@ fn derived(points: &[f64; DEGREE + 1], count: usize) -> [f64; DEGREE + 1] {
 impl JointTrajectory for Piece {
     type Scalar = f64;
 
-    /// By de Casteljau: five rounds of means of two numbers, each of which three roundings change by less than 2ε of the
-    /// largest point.
+    /// By de Casteljau: five rounds of means of two numbers, each of which three roundings change by less than 2ε of
+    /// the largest point.
     fn state(&self, joint: usize, time: f64) -> JointState<f64> {
         let value = |mut points: [f64; DEGREE + 1], count: usize| {
             for round in 1..count {

@@ -20,7 +20,9 @@
 //!
 //! let ray = Ray { source: DVec3::new(-3.0, 0.1, 0.0), direction: DVec3::X };
 //! let mut lambdas = Vec::new();
-//! let cast = paper::gjk_ray_cast(&Ball::new(1.0)?, ray, 1e-12, 100, &SubAlgorithm::Johnson, |seen| lambdas.push(seen.lower));
+//! let cast = paper::gjk_ray_cast(&Ball::new(1.0)?, ray, 1e-12, 100, &SubAlgorithm::Johnson, |seen| {
+//!     lambdas.push(seen.lower);
+//! });
 //! assert_eq!(cast.hit, Some(true));
 //! assert!((cast.lambda - (3.0 - 0.99_f64.sqrt())).abs() < 1e-5, "{cast:?}");
 //! assert!(lambdas.is_sorted());

@@ -101,8 +101,8 @@ fn plainly<S: SupportMap + ?Sized>(
     certain(target.certain_crossing(LineQuery::new(ray.source, ray.direction))?, ray, options)
 }
 
-/// The cast if nothing is certain in plain numbers. Each vector of the ray is passed by itself: of a ray that is written
-/// to memory in pieces and then read in others, the processor waits for the pieces.
+/// The cast if nothing is certain in plain numbers. Each vector of the ray is passed by itself: of a ray that is
+/// written to memory in pieces and then read in others, the processor waits for the pieces.
 #[inline(never)]
 fn searched<S: SupportMap + ?Sized>(
     target: &S,

@@ -92,8 +92,8 @@ impl<V: Vector> StartingPair<'_, V> {
         signed_distance_of_any(self.a, self.b, wanted)
     }
 
-    /// Whether shapes that touch or overlap at the start, to a slack that is the rounding of their places, get deeper by
-    /// more than that as they move; `None` if that is not proved.
+    /// Whether shapes that touch or overlap at the start, to a slack that is the rounding of their places, get deeper
+    /// by more than that as they move; `None` if that is not proved.
     ///
     /// The signed distance `s` of bodies that move straight is a convex function of time: it is the greatest of the
     /// lines `g − c·t` of all planes, each of which keeps the shapes apart by `g` at the start, and is closed in on at

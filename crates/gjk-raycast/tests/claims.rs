@@ -41,8 +41,8 @@ impl laws::Planes for Everywhere {
     }
 }
 
-/// The laws believe their planes, and no answer: of bodies that the planes have farther apart, or nearer, no bound and no
-/// point is accepted.
+/// The laws believe their planes, and no answer: of bodies that the planes have farther apart, or nearer, no bound and
+/// no point is accepted.
 #[test]
 fn planes_refute_bounds_points_and_hits() {
     let ball = Ball::<glam::DVec3>::new(1.0).expect("a radius");
@@ -59,8 +59,8 @@ fn planes_refute_bounds_points_and_hits() {
     assert!(right.broken.is_empty() && right.examined > 50, "{right}");
 }
 
-/// A square on another one turns about a point near the middle of their contact, where its speed is far from that of its
-/// corner; and one beside another moves into it as it turns, where a lean search knows no plane at the start.
+/// A square on another one turns about a point near the middle of their contact, where its speed is far from that of
+/// its corner; and one beside another moves into it as it turns, where a lean search knows no plane at the start.
 #[test]
 fn motions_from_contact_are_converged_only_where_the_bracket_is_narrow() {
     let square = |half: glam::DVec2| Cuboid::new(half).expect("half extents");
@@ -176,8 +176,8 @@ fn a_warm_ray_at_an_edge_rounded_by_little_has_the_normal_of_its_plane() {
     assert!(report.broken.is_empty(), "{report}");
 }
 
-/// A ball of 2⁻²⁴ slides along a segment that it touches to rounding: of two planes with nearly opposite normals the one
-/// through the crossing of their lines is far behind the start, and the miss is told by the one that is left.
+/// A ball of 2⁻²⁴ slides along a segment that it touches to rounding: of two planes with nearly opposite normals the
+/// one through the crossing of their lines is far behind the start, and the miss is told by the one that is left.
 #[test]
 fn a_speck_that_slides_along_a_segment_misses_by_a_plane_at_the_start() {
     type V = glam::Vec2;

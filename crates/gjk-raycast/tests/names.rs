@@ -1,5 +1,5 @@
-//! What the public modules have is at the root of the crate too. The documentation shows it in its module alone, so that
-//! a tool which reads the documentation would not see that it is gone from there.
+//! What the public modules have is at the root of the crate too. The documentation shows it in its module alone, so
+//! that a tool which reads the documentation would not see that it is gone from there.
 
 use std::collections::BTreeSet;
 

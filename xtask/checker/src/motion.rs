@@ -126,8 +126,8 @@ impl Pair {
     /// With bounds on how fast points of the cores move against one another, and how unevenly.
     ///
     /// A point within `r` of the centre of a motion has the velocity `v + ω×y`, and the acceleration `ω×(ω×y)`, with
-    /// `|y| ≤ r`. As a half-space sees it that turns at `ω_B`, it is within a distance `D` of the centre of that one; it has
-    /// the speed `s` against that centre, and the acceleration `ω_A²·r + 2·ω_B·s + ω_B²·D`.
+    /// `|y| ≤ r`. As a half-space sees it that turns at `ω_B`, it is within a distance `D` of the centre of that one;
+    /// it has the speed `s` against that centre, and the acceleration `ω_A²·r + 2·ω_B·s + ω_B²·D`.
     fn new(a: Body, b: Obstacle, motions: [Motion; 2], target: &Interval, max_time: f64) -> Self {
         let [by_a, by_b] = &motions;
         let reach = a.core.reach_from(&by_a.center);

@@ -31,8 +31,8 @@ fn series(name: &str, points: Vec<[f64; 2]>, joined: bool, colour: usize) -> Ser
     Series { name: name.to_owned(), points, joined, colour }
 }
 
-/// The least distance of each part of the way, which is proved, and the distance at poses; `None` where there is nothing
-/// to come near to.
+/// The least distance of each part of the way, which is proved, and the distance at poses; `None` where there is
+/// nothing to come near to.
 pub(super) fn along_way(robot: &Robot, scene: &Around, waypoints: &[Vec<f64>]) -> Result<Option<Plot>, LinkageError> {
     let (mut paths, mut poses, options) =
         (PathWorkspace::new(), ConfigurationWorkspace::new(), MotionClearanceOptions::new());

@@ -118,8 +118,8 @@ pub trait Ask {
     /// what is said besides.
     fn ask_everything(&self) -> Result<String, Problem>;
 
-    /// What became of the claims of its answers, asked with several options from several starts, and judged by the planes
-    /// of the bodies: of the target of a ray, where there is one. `None` where there are no laws for the query.
+    /// What became of the claims of its answers, asked with several options from several starts, and judged by the
+    /// planes of the bodies: of the target of a ray, where there is one. `None` where there are no laws for the query.
     fn claims(&self, starts: &[Numbers], planes: PairPlanes<'_>) -> Option<Report>;
 
     /// Nanoseconds of thread CPU time that solving it takes: the least mean of three runs of about `microseconds` each.

@@ -198,8 +198,8 @@ impl<V: Space> Way<V> {
         Ok((path.map_err(problem)?, free))
     }
 
-    /// What proves a least distance: that the path is free with its lower bound for a target distance, and points of the
-    /// bodies at its time; of a contact the bracket of its time, and points at the end of that.
+    /// What proves a least distance: that the path is free with its lower bound for a target distance, and points of
+    /// the bodies at its time; of a contact the bracket of its time, and points at the end of that.
     fn certificate_of(
         &self,
         &NearestOnPath { edge, link, body, met, least }: &NearestOnPath<V>,
@@ -308,8 +308,8 @@ pub enum Pictures {
     Free([String; 2]),
 }
 
-/// The way of a `path` query in pictures; `None` in the plane, if it is undecided, or if it is free and its robot has one
-/// joint, or nothing to come near to.
+/// The way of a `path` query in pictures; `None` in the plane, if it is undecided, or if it is free and its robot has
+/// one joint, or nothing to come near to.
 ///
 /// # Errors
 /// Where the query is none.

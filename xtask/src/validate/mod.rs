@@ -61,8 +61,8 @@ pub struct Scope {
     /// Query files with `expect`; without any, the embedded suite.
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The cases alone, held to their truths and not to the laws of claims: nothing is compiled for it but the engine of
-    /// the queries, and it runs for seconds.
+    /// The cases alone, held to their truths and not to the laws of claims: nothing is compiled for it but the engine
+    /// of the queries, and it runs for seconds.
     #[arg(long)]
     pub quick: bool,
     /// Also the papers' own routes to the margin, by eigenvalues: their library takes a minute or two more to build.

@@ -260,9 +260,10 @@ impl<V: Vector> NearLine<V> {
     /// Whether a direct line without an error of its own clearly misses a ball about zero, told without a quotient or a
     /// root.
     ///
-    /// `|x|²·d²` of the line's nearest point `x` is `s²·d² − (s·d)²`, right to 8ε of `s²·d²`. With a source no more than
-    /// 8 radii away, the error of `is_past` is at most 41ε of the radius, and asks for 126ε of its square. The size and
-    /// the square of the direction are moderate, so that the square of the one times the other keeps all digits.
+    /// `|x|²·d²` of the line's nearest point `x` is `s²·d² − (s·d)²`, right to 8ε of `s²·d²`. With a source no more
+    /// than 8 radii away, the error of `is_past` is at most 41ε of the radius, and asks for 126ε of its square. The
+    /// size and the square of the direction are moderate, so that the square of the one times the other keeps all
+    /// digits.
     #[inline(always)]
     fn clearly_passes(&self, radius: V::Scalar) -> bool {
         let Self { source, direction, .. } = *self;

@@ -138,8 +138,9 @@ where
 
 /// The certificate of a [`growth_distance`](crate::growth_distance()) about these centres, `c_A` and `c_B`.
 ///
-/// With `d = c_B − c_A` the line from zero along `d` leaves `(A − c_A) − (B − c_B)`, which is `A − B` moved by `d`, where
-/// it is `d/s` for the scale `s`. The points are about that place of it. There are none if the scale is 0, or not known.
+/// With `d = c_B − c_A` the line from zero along `d` leaves `(A − c_A) − (B − c_B)`, which is `A − B` moved by `d`,
+/// where it is `d/s` for the scale `s`. The points are about that place of it. There are none if the scale is 0, or not
+/// known.
 #[must_use]
 pub fn growth_distance_certificate<A, B>(
     a: &A,

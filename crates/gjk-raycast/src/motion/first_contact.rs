@@ -484,8 +484,8 @@ impl<'p, V: Vector> Search<'p, V> {
     }
 
     /// Whether the bodies move against one another, within the bracket, by no more than a converged answer may leave
-    /// open: by two levels of the plane of the last time at which they are apart, which tell how deep they are. The speed
-    /// of their closest points tells nothing of other points.
+    /// open: by two levels of the plane of the last time at which they are apart, which tell how deep they are. The
+    /// speed of their closest points tells nothing of other points.
     ///
     /// Where that plane does not keep the bodies apart, the error of their distance is that of a search that may have
     /// ended early, and the error is that of a level; in between, the level is a part of the acceleration lower.

@@ -1,5 +1,5 @@
-//! Which bodies does a ray or a moving shape hit, and which first? Those whose boxes meet what it sweeps are cast one by
-//! one, earliest boxes first, until no box is earlier than a hit. If bodies move by themselves, see
+//! Which bodies does a ray or a moving shape hit, and which first? Those whose boxes meet what it sweeps are cast one
+//! by one, earliest boxes first, until no box is earlier than a hit. If bodies move by themselves, see
 //! [`moving_pairs`](super::moving_pairs).
 
 use alloc::vec::Vec;

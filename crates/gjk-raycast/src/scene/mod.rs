@@ -250,7 +250,8 @@ impl<S: SupportMap> Scene<S> {
     /// Moves an instance. Only its own box changes, whatever its group is made of.
     ///
     /// # Errors
-    /// [`SceneError::NoSuchInstance`], [`SceneError::NoPose`] or [`SceneError::NotFinite`]. The scene is then as before.
+    /// [`SceneError::NoSuchInstance`], [`SceneError::NoPose`] or [`SceneError::NotFinite`]. The scene is then as
+    /// before.
     pub fn place(&mut self, body: usize, pose: Pose<S::Vector>) -> Result<(), SceneError> {
         let Some(Some(Occupant::Instance(instance))) = self.bodies.get_mut(body) else {
             return Err(SceneError::NoSuchInstance { body });

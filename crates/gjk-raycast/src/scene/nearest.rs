@@ -1,5 +1,5 @@
-//! Which body is nearest to a shape, and which are near? Those whose boxes are near enough are asked one by one, nearest
-//! boxes first. For pairs of bodies see [`nearest_pair`](super::nearest_pair) and [`pairs`](super::pairs).
+//! Which body is nearest to a shape, and which are near? Those whose boxes are near enough are asked one by one,
+//! nearest boxes first. For pairs of bodies see [`nearest_pair`](super::nearest_pair) and [`pairs`](super::pairs).
 
 use alloc::vec::Vec;
 use core::convert::Infallible;

@@ -43,8 +43,8 @@ impl<S: SupportMap> Among<'_, S> {
     }
 
     /// The nearest pair of two of these bodies, the lower index first, if it is within the
-    /// [limit](DistanceOptions::limit) of the options: the least [`distance`](crate::distance()) of all pairs. Neighbours
-    /// in a mesh touch: leave such pairs out by [`without_pairs`](Self::without_pairs).
+    /// [limit](DistanceOptions::limit) of the options: the least [`distance`](crate::distance()) of all pairs.
+    /// Neighbours in a mesh touch: leave such pairs out by [`without_pairs`](Self::without_pairs).
     pub fn least_pair(&self, options: DistanceOptions<S::Vector>) -> ScenePair<S::Vector> {
         least(Pairing::within(*self), options)
     }

@@ -1,6 +1,6 @@
-//! Which pairs of bodies are near each other? Those whose boxes are, as the trees tell, are asked a single query, one by
-//! one and in no order. A [`Pairing`] also serves the searches for the [nearest](super::nearest_pair) pair and for pairs
-//! that [move](super::moving_pairs).
+//! Which pairs of bodies are near each other? Those whose boxes are, as the trees tell, are asked a single query, one
+//! by one and in no order. A [`Pairing`] also serves the searches for the [nearest](super::nearest_pair) pair and for
+//! pairs that [move](super::moving_pairs).
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;

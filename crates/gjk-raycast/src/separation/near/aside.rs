@@ -122,9 +122,9 @@ impl<V: Vector> Known<V> {
         best
     }
 
-    /// The vector without those of its coordinates that hold no more of the bodies' extents than the error of the query,
-    /// if there are any: rounding may have made them up, and they tilt a plane by all of that error. The normal of a
-    /// long box's side comes back exactly.
+    /// The vector without those of its coordinates that hold no more of the bodies' extents than the error of the
+    /// query, if there are any: rounding may have made them up, and they tilt a plane by all of that error. The normal
+    /// of a long box's side comes back exactly.
     fn without_noise(&self, n: V) -> Option<V> {
         let (extent, error) = (self.points.extent, self.frame.error * n.norm());
         let clean = V::from_fn(|i| if n.get(i).abs() * extent.get(i) > error { n.get(i) } else { Scalar::ZERO });
@@ -165,8 +165,8 @@ mod tests {
         Ok(())
     }
 
-    /// Needles a few roundings beside what is small: the length of the needle rounds the query, and tells nothing of the
-    /// gap. A depth search finds the planes too, and a distance may not say that the bodies meet.
+    /// Needles a few roundings beside what is small: the length of the needle rounds the query, and tells nothing of
+    /// the gap. A depth search finds the planes too, and a distance may not say that the bodies meet.
     #[test]
     fn sides_of_needles_are_told_apart_as_a_depth_does() -> Result<(), InvalidShape> {
         let apart = |a: Shape<'_, DVec3>, b: Shape<'_, DVec3>, gap: f64| {
