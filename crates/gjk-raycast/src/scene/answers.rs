@@ -305,10 +305,9 @@ pub struct PairImpact<V: Vector> {
 }
 
 impl<V: Vector> PairImpact<V> {
-    pub(super) fn of(pair: [Id; 2], cast: &MotionCast<V>) -> Option<Self> {
-        let [Id { body: a, member: member_a }, Id { body: b, member: member_b }] = pair;
-        let &Cast { outcome, lower, upper, status, .. } = cast;
-        outcome.hit().map(|impact| Self { a, b, member_a, member_b, impact, lower, upper, status })
+    pub(super) fn of([a, b]: [Id; 2], cast: &MotionCast<V>) -> Option<Self> {
+        let (&Cast { outcome, lower, upper, status, .. }, [member_a, member_b]) = (cast, [a.member, b.member]);
+        outcome.hit().map(|impact| Self { a: a.body, b: b.body, member_a, member_b, impact, lower, upper, status })
     }
 }
 
@@ -349,6 +348,12 @@ pub struct PairContact<V: Vector> {
     pub member_b: Option<usize>,
     /// The contact of the first with the second.
     pub contact: Contact<V>,
+}
+
+impl<V: Vector> PairContact<V> {
+    pub(super) fn of([a, b]: [Id; 2], contact: Contact<V>) -> Self {
+        Self { a: a.body, b: b.body, member_a: a.member, member_b: b.member, contact }
+    }
 }
 
 /// Empties a list of the caller and keeps its memory.

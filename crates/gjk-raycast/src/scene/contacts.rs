@@ -144,8 +144,7 @@ impl<V: Vector> AskPair<V> for ContactWithin<'_, V> {
             }
             (Body::HalfSpace(_), Body::HalfSpace(_)) => return None,
         };
-        let [Id { body: a, member: member_a }, Id { body: b, member: member_b }] = pair;
-        Some(PairContact { a, b, member_a, member_b, contact })
+        Some(PairContact::of(pair, contact))
     }
 }
 
